@@ -1,0 +1,121 @@
+//! # Chapter 1: pixels
+//!
+//! **How does a program put a picture on a screen?** By giving every pixel a color, one at a time.
+//! Everything in this book ends in one call: `framebuffer.set(x, y, color)`.
+//!
+//! New here: the framebuffer (`lib/framebuffer.rs`). Book: chapter 1.
+
+use std::process::ExitCode;
+
+use rasterbook::program::{Chapter, Variant, picture};
+use rasterbook::{Color, Framebuffer, Rect};
+
+pub(crate) const CHAPTER: Chapter = Chapter {
+    name: "ch01_pixels",
+    question: "How does a program put a picture on a screen?",
+    variants: &[
+        Variant::new(
+            "pixel",
+            pixel,
+            "one red pixel at (200, 200), counted from the lower left corner; try --zoom 12@200,200",
+        )
+        .source("section 1.4"),
+        Variant::new(
+            "digit",
+            digit,
+            "a digit made of pixels that are lit or not, with the grid that a screen does not show",
+        )
+        .source("section 1.3, Figure 1-5")
+        .size(320, 400),
+        Variant::new(
+            "subpixels",
+            subpixels,
+            "the three lamps of each pixel on the left, the color that the eye makes of them on the right",
+        )
+        .source("section 1.2, Figures 1-1 and 1-3")
+        .size(632, 208),
+    ],
+};
+
+// ANCHOR: pixel
+/// One pixel.
+fn pixel(framebuffer: &mut Framebuffer) {
+    framebuffer.set(200, 200, Color::RED);
+}
+// ANCHOR_END: pixel
+
+const DIGIT: [&str; 10] = [
+    "........", "..####..", ".#....#.", "......#.", "...###..", "......#.", "......#.", ".#....#.",
+    "..####..", "........",
+];
+
+// ANCHOR: digit
+/// The digit 3 on a screen of 8×10 pixels, each shown as a block of 40×40.
+fn digit(framebuffer: &mut Framebuffer) {
+    let mut screen = Framebuffer::new(8, 10);
+    for (y, row) in (0..).zip(DIGIT.iter().rev()) {
+        for (x, lamp) in (0..).zip(row.chars()) {
+            let color = if lamp == '#' { Color::WHITE } else { Color::BLACK };
+            screen.set(x, y, color);
+        }
+    }
+    picture::paste(framebuffer, &picture::enlarged(&screen, 40), 0, 0);
+}
+// ANCHOR_END: digit
+
+const COLORS: [[Color; 6]; 4] = [
+    [
+        Color::RED,
+        Color::GREEN,
+        Color::BLUE,
+        Color::rgb(255, 255, 0),
+        Color::rgb(0, 255, 255),
+        Color::rgb(255, 0, 255),
+    ],
+    [Color::gray(255), Color::gray(204), Color::gray(153), Color::gray(102), Color::gray(51), Color::gray(0)],
+    [
+        Color::rgb(255, 128, 0),
+        Color::rgb(255, 192, 203),
+        Color::rgb(128, 64, 0),
+        Color::rgb(128, 0, 128),
+        Color::rgb(0, 128, 128),
+        Color::rgb(128, 160, 255),
+    ],
+    [
+        Color::rgb(255, 0, 0),
+        Color::rgb(255, 0, 51),
+        Color::rgb(204, 0, 102),
+        Color::rgb(153, 0, 153),
+        Color::rgb(102, 0, 204),
+        Color::rgb(0, 0, 255),
+    ],
+];
+
+// ANCHOR: subpixels
+/// A screen of 6×4 pixels: the lamps, and what they add up to.
+fn subpixels(framebuffer: &mut Framebuffer) {
+    const CELL: i32 = 52;
+    framebuffer.clear(Color::gray(30));
+    for (row, colors) in (0..).zip(COLORS.iter().rev()) {
+        for (column, &color) in (0..).zip(colors) {
+            let (left, bottom) = (column * CELL, row * CELL);
+
+            // Each lamp shines with the brightness that its channel says.
+            let [red, green, blue] = color.channels();
+            let lamps = [Color::rgb(red, 0, 0), Color::rgb(0, green, 0), Color::rgb(0, 0, blue)];
+            for (i, lamp) in (0..).zip(lamps) {
+                let left = left + 2 + i * 16;
+                framebuffer
+                    .fill(Rect { left, bottom: bottom + 3, right: left + 14, top: bottom + CELL - 3 }, lamp);
+            }
+
+            let left = left + 6 * CELL + 8;
+            framebuffer.fill(Rect { left, bottom, right: left + CELL, top: bottom + CELL }, color);
+        }
+    }
+}
+// ANCHOR_END: subpixels
+
+fn main() -> ExitCode {
+    CHAPTER.main()
+}

@@ -1,0 +1,87 @@
+//! # Chapter 2, first part: lines
+//!
+//! **Which pixels belong to a line between two points?** A line has no width and pixels have no gaps: one coordinate
+//! must go up pixel by pixel, and the other one follows. Which of the two, that is the question.
+//!
+//! New here: the digital differential analyzer, DDA (`lib/line.rs`). Book: section 2.1.
+
+use std::process::ExitCode;
+
+use glam::{DVec2, dvec2};
+use rasterbook::line::{StepAxis, dda};
+use rasterbook::program::{Chapter, Variant};
+use rasterbook::{Color, Framebuffer};
+
+pub(crate) const CHAPTER: Chapter = Chapter {
+    name: "ch02_dda_lines",
+    question: "Which pixels belong to a line between two points?",
+    variants: &[
+        Variant::new("star", star, "rays in every direction, a color for each octant; none has a gap")
+            .source("section 2.1")
+            .size(480, 480),
+        Variant::new("line", line, "a vertical line: 300 pixels, one in each row, its upper end not drawn")
+            .source("section 2.1"),
+        Variant::new(
+            "broken",
+            broken,
+            "the same rays, always stepping x: steep ones fall apart into dots, vertical ones vanish",
+        )
+        .source("section 2.1, Figure 2-2")
+        .size(480, 480)
+        .mended_by("star"),
+    ],
+};
+
+// ANCHOR: line
+/// One line.
+fn line(framebuffer: &mut Framebuffer) {
+    draw_line(framebuffer, dvec2(100.0, 0.0), dvec2(100.0, 300.0), StepAxis::Longer, Color::RED);
+}
+
+/// Colors the pixels that the DDA emits.
+fn draw_line(framebuffer: &mut Framebuffer, a: DVec2, b: DVec2, axis: StepAxis, color: Color) {
+    dda(a, b, axis, framebuffer.rect(), |x, y| framebuffer.set(x, y, color));
+}
+// ANCHOR_END: line
+
+/// Rays that step along their longer axis.
+fn star(framebuffer: &mut Framebuffer) {
+    rays(framebuffer, StepAxis::Longer);
+}
+
+/// Rays that step x whatever their slope.
+fn broken(framebuffer: &mut Framebuffer) {
+    rays(framebuffer, StepAxis::X);
+}
+
+/// A color for each eighth of the circle, counter-clockwise from the right.
+const OCTANTS: [Color; 8] = [
+    Color::rgb(255, 96, 96),
+    Color::rgb(255, 176, 64),
+    Color::rgb(240, 240, 80),
+    Color::rgb(120, 230, 90),
+    Color::rgb(80, 220, 200),
+    Color::rgb(90, 170, 255),
+    Color::rgb(150, 130, 255),
+    Color::rgb(240, 120, 230),
+];
+
+// ANCHOR: rays
+/// Rays from the middle to points all round a square, six in each octant.
+fn rays(framebuffer: &mut Framebuffer, axis: StepAxis) {
+    let center = dvec2(240.0, 240.0);
+    for (octant, color) in OCTANTS.into_iter().enumerate() {
+        for i in 0..6 {
+            // Up the right side of the square, or along its top to the left; then turned by quarters of a circle.
+            let along = 38.0 * f64::from(i);
+            let ray = if octant % 2 == 0 { dvec2(228.0, along) } else { dvec2(228.0 - along, 228.0) };
+            let ray = (0..octant / 2).fold(ray, |ray, _| ray.perp());
+            draw_line(framebuffer, center, center + ray, axis, color);
+        }
+    }
+}
+// ANCHOR_END: rays
+
+fn main() -> ExitCode {
+    CHAPTER.main()
+}

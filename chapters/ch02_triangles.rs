@@ -1,0 +1,180 @@
+//! # Chapter 2, second part: triangles
+//!
+//! **Which pixels belong to a triangle?** Everything that follows is made of triangles. One is filled row by row:
+//! split it at its middle vertex, walk up the two sides of each half, and fill what lies between them.
+//!
+//! New here: signed area (`lib/area.rs`) and the scanline walk (`lib/scanline.rs`), which emits spans and knows no
+//! color. Book: section 2.2.
+
+use std::process::ExitCode;
+
+use glam::DVec2;
+use rasterbook::program::{Chapter, Variant, picture};
+use rasterbook::scanline::{Corner, EdgeWalk, Half, Span, Walk, split};
+use rasterbook::{Color, Framebuffer, Rect};
+
+pub(crate) const CHAPTER: Chapter = Chapter {
+    name: "ch02_triangles",
+    question: "Which pixels belong to a triangle?",
+    variants: &[
+        Variant::new("flat", flat, "one triangle in one color").source("section 2.2"),
+        Variant::new(
+            "split",
+            split_in_two,
+            "the two halves, and the new point P′ on the long edge at the height of the middle vertex",
+        )
+        .source("section 2.2, Figure 2-3"),
+        Variant::new(
+            "overshoot",
+            overshoot,
+            "rows that shoot out of the tree wherever an edge is nearly level",
+        )
+        .source("section 2.2, Figure 2-4")
+        .size(320, 320)
+        .mended_by("clamped"),
+        Variant::new(
+            "clamped",
+            clamped,
+            "the same tree with x kept between the ends of its edge: nothing outside",
+        )
+        .source("section 2.2")
+        .size(320, 320),
+        Variant::new(
+            "shared-edge",
+            shared_edge,
+            "six triangles added up: yellow and red pixels are drawn twice or more, along every seam",
+        )
+        .unmended(),
+    ],
+};
+
+// ANCHOR: fill
+/// Colors all pixels of a triangle.
+fn fill(framebuffer: &mut Framebuffer, triangle: [DVec2; 3], walk: Walk, color: Color) {
+    for half in halves(triangle).into_iter().flatten() {
+        fill_half(framebuffer, &half, walk, color);
+    }
+}
+
+/// The halves of a triangle whose corners carry nothing but their position.
+fn halves(triangle: [DVec2; 3]) -> Option<[Half<()>; 2]> {
+    split(triangle.map(|position| Corner { position, attributes: () }), |(), (), _| ())
+}
+
+/// Colors the spans of one half.
+fn fill_half(framebuffer: &mut Framebuffer, half: &Half<()>, walk: Walk, color: Color) {
+    half.walk(
+        |_| [(), ()],
+        walk,
+        framebuffer.rect(),
+        |span: Span<()>| {
+            for x in span.columns() {
+                framebuffer.set(x, span.y, color);
+            }
+        },
+    );
+}
+// ANCHOR_END: fill
+
+/// Three points of the screen.
+fn triangle(corners: [(f64, f64); 3]) -> [DVec2; 3] {
+    corners.map(DVec2::from)
+}
+
+/// The book's triangle.
+fn flat(framebuffer: &mut Framebuffer) {
+    let corners = triangle([(100.0, 0.0), (100.0, 300.0), (300.0, 0.0)]);
+    fill(framebuffer, corners, Walk::default(), Color::RED);
+}
+
+// ANCHOR: split_in_two
+/// The halves in two colors; the corners and P′ marked.
+fn split_in_two(framebuffer: &mut Framebuffer) {
+    let corners = triangle([(430.0, 40.0), (90.0, 190.0), (540.0, 440.0)]);
+    for half in halves(corners).into_iter().flatten() {
+        let is_lower = half.left.start.position == half.right.start.position;
+        let color = if is_lower { Color::rgb(230, 120, 40) } else { Color::rgb(50, 110, 210) };
+        fill_half(framebuffer, &half, Walk::default(), color);
+
+        for end in [half.left.start, half.left.end, half.right.start, half.right.end] {
+            let is_new = !corners.contains(&end.position);
+            mark(framebuffer, end.position, if is_new { Color::rgb(255, 230, 0) } else { Color::WHITE });
+        }
+    }
+}
+// ANCHOR_END: split_in_two
+
+/// A square of 9×9 pixels around a point.
+fn mark(framebuffer: &mut Framebuffer, point: DVec2, color: Color) {
+    let (x, y) = (point.x as i32, point.y as i32);
+    framebuffer.fill(Rect { left: x - 4, bottom: y - 4, right: x + 5, top: y + 5 }, color);
+}
+
+/// The tree with x free to leave its edges.
+fn overshoot(framebuffer: &mut Framebuffer) {
+    tree(framebuffer, Walk { edges: EdgeWalk::Unclamped, ..Walk::default() });
+}
+
+/// The tree with x kept between the ends of its edges.
+fn clamped(framebuffer: &mut Framebuffer) {
+    tree(framebuffer, Walk::default());
+}
+
+// ANCHOR: tree
+/// A fir tree. Each layer's base is level but for two thousandths of a pixel, so that one step of y moves x by 50,000.
+fn tree(framebuffer: &mut Framebuffer, walk: Walk) {
+    for i in 0..6 {
+        let layer = f64::from(i);
+        let (base, half_width) = (60.0 + 36.0 * layer, 100.0 - 14.0 * layer);
+        // The lower end is now on the left, now on the right.
+        let tilt = if i % 2 == 0 { 0.001 } else { -0.001 };
+        let corners = triangle([
+            (160.0 - half_width, base - tilt),
+            (160.0 + half_width, base + tilt),
+            (160.0, base + 70.0),
+        ]);
+        fill(framebuffer, corners, walk, Color::rgb(20, 90 + 22 * i, 50));
+    }
+}
+// ANCHOR_END: tree
+
+// ANCHOR: shared_edge
+/// How often each pixel is drawn when six triangles make up a hexagon.
+fn shared_edge(framebuffer: &mut Framebuffer) {
+    let center = (19.6, 14.7);
+    let rim = [(36.3, 15.2), (27.8, 27.4), (11.4, 26.9), (3.2, 14.1), (10.7, 2.3), (28.9, 1.6)];
+    let mut screen = Framebuffer::new(40, 30);
+    for i in 0..6 {
+        let corners = triangle([center, rim[i], rim[(i + 1) % 6]]);
+        for half in halves(corners).into_iter().flatten() {
+            half.walk(
+                |_| [(), ()],
+                Walk::default(),
+                screen.rect(),
+                |span| {
+                    for x in span.columns() {
+                        let before = screen.get(x, span.y).unwrap_or_default();
+                        screen.set(x, span.y, one_more(before));
+                    }
+                },
+            );
+        }
+    }
+    picture::paste(framebuffer, &picture::enlarged(&screen, 16), 0, 0);
+}
+
+/// The color of a pixel that has been drawn once more than `color` says.
+fn one_more(color: Color) -> Color {
+    const ONCE: Color = Color::rgb(60, 90, 130);
+    const TWICE: Color = Color::rgb(255, 220, 60);
+    match color {
+        Color::BLACK => ONCE,
+        ONCE => TWICE,
+        _ => Color::rgb(240, 50, 40),
+    }
+}
+// ANCHOR_END: shared_edge
+
+fn main() -> ExitCode {
+    CHAPTER.main()
+}

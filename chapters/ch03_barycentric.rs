@@ -1,0 +1,154 @@
+//! # Chapter 3: barycentric interpolation and textures
+//!
+//! **The corners have values: which value has a pixel between them?** The nearer a corner, the more it weighs. Along a
+//! straight line the weights change evenly, so that the scanline walk needs one addition a pixel.
+//!
+//! New here: interpolation (`lib/interpolate.rs`) and textures (`lib/texture.rs`). The walk is that of chapter 2; what
+//! is stepped along with x is new. Book: chapter 3.
+
+use std::process::ExitCode;
+
+use glam::{DVec2, dvec2};
+use rasterbook::interpolate::{barycentric_weights, step_values};
+use rasterbook::program::{Chapter, Variant, picture};
+use rasterbook::scanline::{Corner, StepLimit, Walk};
+use rasterbook::texture::{AddressMode, Texture};
+use rasterbook::{Color, Framebuffer};
+
+pub(crate) const CHAPTER: Chapter = Chapter {
+    name: "ch03_barycentric",
+    question: "The corners have values: which value has a pixel between them?",
+    variants: &[
+        Variant::new("rgb", rgb, "red, green and blue corners, and all their mixtures between them").source("section 3.2.5"),
+        Variant::new("gray", gray, "one value a corner: black, white, black").source("section 3.2.4"),
+        Variant::new("texture", texture, "texture coordinates as values: half of the book's 2×2 texture on a triangle")
+            .source("section 3.3, Figures 3-10 and 3-11"),
+        Variant::new("weights", weights, "the weight of each corner by areas: its lines of equal weight run along the opposite edge")
+            .source("section 3.2.2, Figures 3-6 and 3-7"),
+        Variant::new("spikes", spikes, "orange: pixels whose value is out of the range of the corners, stepped past an edge's end")
+            .source("section 11.4")
+            .mended_by("limited"),
+        Variant::new("limited-edges", limited_edges, "the same, limited along the edges as in the book: the last pixel of a row may still pass the end")
+            .source("section 11.4"),
+        Variant::new("limited", limited, "the same, limited along the rows too: no orange pixel is left"),
+    ],
+};
+
+/// A corner on the screen with its values.
+fn corner<const N: usize>(x: f64, y: f64, values: [f64; N]) -> Corner<[f64; N]> {
+    Corner { position: dvec2(x, y), attributes: values }
+}
+
+// ANCHOR: gray
+/// One value a corner, drawn as gray.
+fn gray(framebuffer: &mut Framebuffer) {
+    let corners = [corner(100.0, 0.0, [0.0]), corner(0.0, 100.0, [255.0]), corner(100.0, 200.0, [0.0])];
+    step_values(corners, Walk::default(), framebuffer.rect(), |x, y, [value]| {
+        framebuffer.set(x, y, Color::truncated([value; 3]));
+    });
+}
+// ANCHOR_END: gray
+
+// ANCHOR: rgb
+/// Three values a corner, drawn as a color.
+fn rgb(framebuffer: &mut Framebuffer) {
+    let corners = [
+        corner(0.0, 0.0, [255.0, 0.0, 0.0]),
+        corner(240.0, 240.0, [0.0, 255.0, 0.0]),
+        corner(0.0, 480.0, [0.0, 0.0, 255.0]),
+    ];
+    step_values(corners, Walk::default(), framebuffer.rect(), |x, y, values| {
+        framebuffer.set(x, y, Color::truncated(values));
+    });
+}
+// ANCHOR_END: rgb
+
+// ANCHOR: texture
+/// Two values a corner, drawn as the texel that they point to.
+fn texture(framebuffer: &mut Framebuffer) {
+    let texture = Texture::book();
+    let corners =
+        [corner(0.0, 0.0, [0.0, 0.0]), corner(480.0, 0.0, [1.0, 0.0]), corner(0.0, 480.0, [0.0, 1.0])];
+    step_values(corners, Walk::default(), framebuffer.rect(), |x, y, uv| {
+        framebuffer.set(x, y, texture.nearest(uv, AddressMode::Clamp));
+    });
+}
+// ANCHOR_END: texture
+
+// ANCHOR: weights
+/// The three weights at every pixel as red, green and blue, with a line at every tenth.
+fn weights(framebuffer: &mut Framebuffer) {
+    let triangle = [dvec2(70.0, 50.0), dvec2(590.0, 130.0), dvec2(250.0, 440.0)];
+    for y in framebuffer.rect().rows() {
+        for x in framebuffer.rect().columns() {
+            let weights = barycentric_weights(dvec2(f64::from(x), f64::from(y)), triangle);
+            let inside = weights.iter().all(|&weight| weight >= 0.0);
+            let on_tenth =
+                weights.iter().any(|&weight| (weight * 10.0 - (weight * 10.0).round()).abs() < 0.025);
+            // Beyond an edge the weight of the opposite corner is negative; dim, so that the triangle stands out.
+            let brightness = if inside == on_tenth {
+                110.0
+            } else if inside {
+                255.0
+            } else {
+                40.0
+            };
+            framebuffer.set(x, y, Color::truncated(weights.map(|weight| weight * brightness)));
+        }
+    }
+}
+// ANCHOR_END: weights
+
+// ANCHOR: spikes
+/// Values stepped past the ends of the edges.
+fn spikes(framebuffer: &mut Framebuffer) {
+    fan(framebuffer, StepLimit::Overrun);
+}
+
+/// Values limited along the edges.
+fn limited_edges(framebuffer: &mut Framebuffer) {
+    fan(framebuffer, StepLimit::Edges);
+}
+
+/// Values limited along edges and rows.
+fn limited(framebuffer: &mut Framebuffer) {
+    fan(framebuffer, StepLimit::Everywhere);
+}
+
+/// A fan of thin triangles on a screen of 80×60 pixels. All corners have values in 0..=1, drawn as blue; a value
+/// outside is drawn in orange.
+fn fan(framebuffer: &mut Framebuffer, limit: StepLimit) {
+    let mut screen = Framebuffer::new(80, 60);
+    let window = screen.rect();
+    let rim: [DVec2; 9] = [
+        dvec2(74.6, 8.7),
+        dvec2(76.3, 20.4),
+        dvec2(72.8, 33.6),
+        dvec2(63.4, 45.3),
+        dvec2(49.7, 53.6),
+        dvec2(34.2, 56.8),
+        dvec2(20.4, 52.3),
+        dvec2(9.6, 41.7),
+        dvec2(4.3, 27.6),
+    ];
+    for (i, pair) in rim.windows(2).enumerate() {
+        // Bright at one end of the rim's edge, dark at the other.
+        let (first, second) = if i % 2 == 0 { (0.0, 1.0) } else { (1.0, 0.0) };
+        let corners = [
+            corner(38.6, 6.3, [0.5]),
+            corner(pair[0].x, pair[0].y, [first]),
+            corner(pair[1].x, pair[1].y, [second]),
+        ];
+        step_values(corners, Walk { limit, ..Walk::default() }, window, |x, y, [value]| {
+            let is_in_range = (-1e-9..=1.0 + 1e-9).contains(&value);
+            let blue = Color::truncated([30.0 + 60.0 * value, 60.0 + 120.0 * value, 110.0 + 140.0 * value]);
+            screen.set(x, y, if is_in_range { blue } else { Color::rgb(255, 140, 0) });
+        });
+    }
+    picture::paste(framebuffer, &picture::enlarged(&screen, 8), 0, 0);
+}
+// ANCHOR_END: spikes
+
+fn main() -> ExitCode {
+    CHAPTER.main()
+}

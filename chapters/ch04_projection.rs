@@ -1,0 +1,156 @@
+//! # Chapter 4: projection
+//!
+//! **Why is small what is far away?** A point is seen where the line from it to the eye crosses the screen. Similar
+//! triangles make a division of it: x′ = n x / z.
+//!
+//! New here: homogeneous coordinates and the perspective projection (`lib/transform.rs`). The book has no program for
+//! this chapter; the pictures here are made of the lines of chapter 2. Book: chapter 4.
+
+use std::process::ExitCode;
+
+use glam::{DVec2, DVec3, DVec4, dvec2, dvec3};
+use rasterbook::line::{StepAxis, dda};
+use rasterbook::program::{Chapter, Variant};
+use rasterbook::transform::{orthographic, perspective, perspective_divide};
+use rasterbook::{Color, Framebuffer, Rect};
+
+pub(crate) const CHAPTER: Chapter = Chapter {
+    name: "ch04_projection",
+    question: "Why is small what is far away?",
+    variants: &[
+        Variant::new("cube", cube, "five cubes of one size, one behind the other: each looks smaller than the one before it, and so does its back")
+            .source("section 4.2.2, Figure 4-3"),
+        Variant::new("orthographic", orthographic_cubes, "the same cubes without the division: all of one size, and each hides its own back"),
+        Variant::new("rails", rails, "parallel rails meet at the horizon; the yellow points, each projected by itself, lie on them: straight stays straight")
+            .source("section 4.2.2, Figure 4-4"),
+        Variant::new("near", near, "one scene at n = 150 (blue), 300 (green) and 600 (red): twice the near distance is twice the picture, and nothing else"),
+    ],
+};
+
+// ANCHOR: to_screen
+/// Divides, and moves the point where the camera looks to the middle of a picture of 640×480.
+fn to_screen(clip: DVec4) -> DVec2 {
+    dvec2(320.0, 240.0) + perspective_divide(clip).truncate()
+}
+
+/// Draws the segment between two points of space: it suffices to project its ends.
+fn segment(
+    framebuffer: &mut Framebuffer,
+    project: impl Fn(DVec3) -> DVec4,
+    a: DVec3,
+    b: DVec3,
+    color: Color,
+) {
+    let (a, b) = (to_screen(project(a)), to_screen(project(b)));
+    dda(a, b, StepAxis::Longer, framebuffer.rect(), |x, y| framebuffer.set(x, y, color));
+}
+// ANCHOR_END: to_screen
+
+/// The corners of a cube's front, in order round it.
+const FRONT: [(f64, f64); 4] = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+
+/// Draws the edges of an upright cube: those of the front in the color, the others dimmer.
+fn draw_cube(
+    framebuffer: &mut Framebuffer,
+    project: impl Fn(DVec3) -> DVec4 + Copy,
+    center: DVec3,
+    half: f64,
+    color: Color,
+) {
+    let corner = |i: usize, z: f64| center + half * dvec3(FRONT[i % 4].0, FRONT[i % 4].1, z);
+    let dim = Color::truncated(color.to_f64().map(|channel| channel * 0.55));
+    for i in 0..4 {
+        segment(framebuffer, project, corner(i, 1.0), corner(i + 1, 1.0), dim);
+        segment(framebuffer, project, corner(i, -1.0), corner(i, 1.0), dim);
+    }
+    for i in 0..4 {
+        segment(framebuffer, project, corner(i, -1.0), corner(i + 1, -1.0), color);
+    }
+}
+
+// ANCHOR: cubes
+/// Five cubes, each farther away and more to the right than the one before it.
+fn cubes(framebuffer: &mut Framebuffer, project: impl Fn(DVec3) -> DVec4 + Copy) {
+    let colors = [
+        Color::rgb(255, 90, 80),
+        Color::rgb(255, 180, 60),
+        Color::rgb(240, 240, 90),
+        Color::rgb(100, 220, 120),
+        Color::rgb(90, 160, 255),
+    ];
+    for (i, color) in (0..).zip(colors) {
+        let step = f64::from(i);
+        let center = dvec3(-240.0 + 120.0 * step, -90.0 + 40.0 * step, 400.0 + 220.0 * step);
+        draw_cube(framebuffer, project, center, 50.0, color);
+    }
+}
+
+/// The cubes in perspective.
+fn cube(framebuffer: &mut Framebuffer) {
+    cubes(framebuffer, |point| perspective(point, 400.0));
+}
+
+/// The cubes without perspective.
+fn orthographic_cubes(framebuffer: &mut Framebuffer) {
+    cubes(framebuffer, orthographic);
+}
+// ANCHOR_END: cubes
+
+// ANCHOR: rails
+/// A railway line towards the horizon.
+fn rails(framebuffer: &mut Framebuffer) {
+    let project = |point| perspective(point, 300.0);
+    let (first, last) = (150.0, 60_000.0);
+
+    // Sleepers at equal distances, and poles beside the track.
+    for i in 0..120 {
+        let z = first + 90.0 * f64::from(i);
+        segment(
+            framebuffer,
+            project,
+            dvec3(-140.0, -120.0, z),
+            dvec3(140.0, -120.0, z),
+            Color::rgb(130, 85, 50),
+        );
+        if i % 4 == 2 {
+            segment(framebuffer, project, dvec3(260.0, -120.0, z), dvec3(260.0, 110.0, z), Color::gray(150));
+        }
+    }
+
+    // What is parallel to the track: two rails, and the wire along the poles.
+    let [left, right, wire] = [(-100.0, -120.0), (100.0, -120.0), (260.0, 110.0)];
+    for (x, y) in [left, right, wire] {
+        segment(framebuffer, project, dvec3(x, y, first), dvec3(x, y, last), Color::rgb(210, 220, 230));
+    }
+
+    // Points on the rails, each projected by itself.
+    for i in 0..10 {
+        let z = first + 180.0 * f64::from(i);
+        for (x, y) in [left, right] {
+            let p = to_screen(project(dvec3(x, y, z)));
+            let (x, y) = (p.x as i32, p.y as i32);
+            framebuffer
+                .fill(Rect { left: x - 1, bottom: y - 1, right: x + 2, top: y + 2 }, Color::rgb(255, 220, 0));
+        }
+    }
+}
+// ANCHOR_END: rails
+
+// ANCHOR: near
+/// One scene, three near distances.
+fn near(framebuffer: &mut Framebuffer) {
+    for (near, color) in [
+        (600.0, Color::rgb(255, 90, 80)),
+        (300.0, Color::rgb(100, 220, 120)),
+        (150.0, Color::rgb(100, 150, 255)),
+    ] {
+        let project = |point| perspective(point, near);
+        draw_cube(framebuffer, project, dvec3(-70.0, -20.0, 650.0), 110.0, color);
+        draw_cube(framebuffer, project, dvec3(170.0, 60.0, 900.0), 90.0, color);
+    }
+}
+// ANCHOR_END: near
+
+fn main() -> ExitCode {
+    CHAPTER.main()
+}

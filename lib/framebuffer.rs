@@ -1,0 +1,250 @@
+//! Chapter 1: a plane of pixels, addressing, clearing.
+//!
+//! The last stop of the data flow: every other room emits positions and values, and the caller writes colors here.
+//!
+//! ```
+//! use rasterbook::{Color, Framebuffer};
+//!
+//! let mut framebuffer = Framebuffer::new(4, 3);
+//! framebuffer.set(1, 2, Color::RED);
+//! assert_eq!(framebuffer.get(1, 2), Some(Color::RED));
+//! assert_eq!(framebuffer.get(4, 0), None); // outside
+//! ```
+
+use std::fmt;
+use std::ops::Range;
+
+/// A color of three channels with 8 bits each, as a screen shows it. Book, section 1.2.
+///
+/// Stored in one 32-bit word, `0x00RRGGBB`.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct Color(u32);
+
+impl Color {
+    /// No light at all: what a cleared framebuffer shows.
+    pub const BLACK: Self = Self::rgb(0, 0, 0);
+    /// All three lamps of a pixel at full brightness.
+    pub const WHITE: Self = Self::rgb(255, 255, 255);
+    /// The red lamp alone.
+    pub const RED: Self = Self::rgb(255, 0, 0);
+    /// The green lamp alone.
+    pub const GREEN: Self = Self::rgb(0, 255, 0);
+    /// The blue lamp alone.
+    pub const BLUE: Self = Self::rgb(0, 0, 255);
+
+    /// The color with the given channels, each in 0..=255.
+    #[must_use]
+    pub const fn rgb(red: u8, green: u8, blue: u8) -> Self {
+        Self((red as u32) << 16 | (green as u32) << 8 | blue as u32)
+    }
+
+    /// The gray whose three channels are all `value`.
+    #[must_use]
+    pub const fn gray(value: u8) -> Self {
+        Self::rgb(value, value, value)
+    }
+
+    /// The channels `[red, green, blue]`.
+    #[must_use]
+    pub const fn channels(self) -> [u8; 3] {
+        let [_, red, green, blue] = self.0.to_be_bytes();
+        [red, green, blue]
+    }
+
+    /// Channel values in 0.0..=255.0, fractions cut off as the book does; values outside are limited, NaN gives 0.
+    #[must_use]
+    pub fn truncated([red, green, blue]: [f64; 3]) -> Self {
+        Self::rgb(red as u8, green as u8, blue as u8)
+    }
+
+    /// The channels as numbers in 0.0..=255.0.
+    #[must_use]
+    pub fn to_f64(self) -> [f64; 3] {
+        self.channels().map(f64::from)
+    }
+}
+
+impl fmt::Debug for Color {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [red, green, blue] = self.channels();
+        write!(f, "({red}, {green}, {blue})")
+    }
+}
+
+/// A rectangle of pixels, half-open: `left ≤ x < right`, `bottom ≤ y < top`.
+///
+/// Every stage that emits pixels takes one and emits nothing outside it: that is the scissor, and it is why
+/// not even a deliberate mistake can write out of bounds or run for ever.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rect {
+    /// The first column.
+    pub left: i32,
+    /// The lowest row.
+    pub bottom: i32,
+    /// The column after the last.
+    pub right: i32,
+    /// The row above the highest.
+    pub top: i32,
+}
+
+impl Rect {
+    /// The rectangle of `width` × `height` pixels with its lower left pixel at (0, 0).
+    #[must_use]
+    pub const fn sized(width: u32, height: u32) -> Self {
+        Self { left: 0, bottom: 0, right: width as i32, top: height as i32 }
+    }
+
+    /// Whether the pixel (x, y) belongs to the rectangle.
+    #[must_use]
+    pub const fn contains(self, x: i32, y: i32) -> bool {
+        self.left <= x && x < self.right && self.bottom <= y && y < self.top
+    }
+
+    /// The columns, from left to right.
+    #[must_use]
+    pub const fn columns(self) -> Range<i32> {
+        self.left..self.right
+    }
+
+    /// The rows, from bottom to top.
+    #[must_use]
+    pub const fn rows(self) -> Range<i32> {
+        self.bottom..self.top
+    }
+}
+
+/// A plane of pixels. The origin is at the bottom left and y points up, as in the book's `SetPixel` (section 1.5).
+///
+/// ```text
+///      y
+///      ▲
+///      2 │ . # .        set(1, 2, …) is the pixel #
+///      1 │ . . .
+///      0 │ . . .        memory: row 0 first, left to right,
+///        └──────► x     so (x, y) stands at y · width + x
+///          0 1 2
+/// ```
+#[derive(Clone, PartialEq, Eq)]
+pub struct Framebuffer {
+    width: u32,
+    height: u32,
+    pixels: Vec<Color>,
+}
+
+impl Framebuffer {
+    /// The largest width and the largest height of a framebuffer, in pixels.
+    pub const MAX_SIDE: u32 = 16_384;
+
+    /// A black framebuffer of `width` × `height` pixels.
+    ///
+    /// # Panics
+    /// If a side is 0 or larger than [`Self::MAX_SIDE`].
+    #[must_use]
+    pub fn new(width: u32, height: u32) -> Self {
+        let sides = 1..=Self::MAX_SIDE;
+        assert!(
+            sides.contains(&width) && sides.contains(&height),
+            "no framebuffer has {width}×{height} pixels"
+        );
+        let pixels = vec![Color::BLACK; width as usize * height as usize];
+        Self { width, height, pixels }
+    }
+
+    /// The number of columns.
+    #[must_use]
+    pub const fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// The number of rows.
+    #[must_use]
+    pub const fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// All pixels, as the rectangle that the drawing stages take as their window.
+    #[must_use]
+    pub const fn rect(&self) -> Rect {
+        Rect::sized(self.width, self.height)
+    }
+
+    // ANCHOR: addressing
+    /// Where the pixel (x, y) stands in memory; `None` outside.
+    fn index(&self, x: i32, y: i32) -> Option<usize> {
+        self.rect().contains(x, y).then(|| y as usize * self.width as usize + x as usize)
+    }
+
+    /// Gives the pixel (x, y) a color. Outside the framebuffer nothing happens.
+    pub fn set(&mut self, x: i32, y: i32, color: Color) {
+        if let Some(index) = self.index(x, y) {
+            self.pixels[index] = color;
+        }
+    }
+    // ANCHOR_END: addressing
+
+    /// The color of the pixel (x, y); `None` outside.
+    #[must_use]
+    pub fn get(&self, x: i32, y: i32) -> Option<Color> {
+        self.index(x, y).map(|index| self.pixels[index])
+    }
+
+    /// Gives all pixels the same color.
+    pub fn clear(&mut self, color: Color) {
+        self.pixels.fill(color);
+    }
+
+    /// Gives the pixels of a rectangle a color; what lies outside the framebuffer is left out.
+    pub fn fill(&mut self, rect: Rect, color: Color) {
+        let all = self.rect();
+        for y in rect.bottom.max(all.bottom)..rect.top.min(all.top) {
+            for x in rect.left.max(all.left)..rect.right.min(all.right) {
+                self.set(x, y, color);
+            }
+        }
+    }
+
+    /// The rows as an image file holds them: the highest first.
+    pub fn rows_from_top(&self) -> impl Iterator<Item = &[Color]> {
+        self.pixels.chunks(self.width as usize).rev()
+    }
+}
+
+impl fmt::Debug for Framebuffer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Framebuffer of {}×{} pixels", self.width, self.height)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pixel_is_where_it_was_set() {
+        let mut framebuffer = Framebuffer::new(3, 2);
+        framebuffer.set(2, 0, Color::RED);
+        framebuffer.set(0, 1, Color::GREEN);
+        let rows: Vec<Vec<Color>> = framebuffer.rows_from_top().map(<[Color]>::to_vec).collect();
+        assert_eq!(rows[0], [Color::GREEN, Color::BLACK, Color::BLACK], "y = 1 is the first row of a file");
+        assert_eq!(rows[1], [Color::BLACK, Color::BLACK, Color::RED], "y = 0 is the last row of a file");
+    }
+
+    #[test]
+    fn outside_is_left_alone() {
+        let mut framebuffer = Framebuffer::new(3, 2);
+        let before = framebuffer.clone();
+        for (x, y) in [(-1, 0), (0, -1), (3, 0), (0, 2), (i32::MIN, i32::MAX)] {
+            framebuffer.set(x, y, Color::RED);
+            assert_eq!(framebuffer.get(x, y), None);
+        }
+        framebuffer.fill(Rect { left: 3, bottom: -5, right: 99, top: 99 }, Color::RED);
+        assert!(framebuffer == before);
+    }
+
+    #[test]
+    fn channels_survive_packing() {
+        assert_eq!(Color::rgb(1, 2, 255).channels(), [1, 2, 255]);
+        assert_eq!(Color::truncated([254.999, -3.0, f64::NAN]), Color::rgb(254, 0, 0));
+        assert_eq!(Color::truncated([1e30, 128.0, 0.5]), Color::rgb(255, 128, 0));
+    }
+}

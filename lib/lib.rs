@@ -1,0 +1,48 @@
+//! **Rasterbook**: a software renderer in eleven programs that teaches how 3D rendering works.
+//!
+//! Every pixel is drawn by code in this library, on the CPU, and every room of it is met in the order of the book:
+//!
+//! ```text
+//!   vertices ──► clip space ──► clipped polygon ──► NDC ──► screen ──► spans ──► fragments ──► framebuffer
+//!
+//!   ch1  framebuffer   a plane of pixels: addressing, clearing
+//!   ch2  line          DDA: emits pixels through a callback
+//!   ch2  area          signed area, which side of an edge, winding
+//!   ch2  scanline      sort, split, walk the edges, emit spans: coverage only, no color
+//!   ch3  real          the numbers that interpolation is written for
+//!   ch3  interpolate   barycentric weights, affine and perspective-correct interpolation
+//!   ch3  texture       texels and address modes
+//!   ch4  transform     projection
+//!   …    program       what the eleven `main`s share; nothing above imports it
+//! ```
+//!
+//! Data flows one way. A stage hands its results to the next through a callback, so that an early chapter can call
+//! a stage by itself. Coverage (which pixels), interpolation (which values) and writing (which colors) are three rooms.
+//!
+//! # Conventions
+//!
+//! - Camera space is left-handed: +x right, +y up, +z into the screen.
+//! - The framebuffer's origin is at the bottom left and y points up; image files have their first row on top.
+//! - Pixels sit on integer coordinates; a span runs from `trunc(start)` while `x ≤ end`, rows from `trunc(y₁)` while
+//!   `y < y₂`. This is the book's rule.
+//! - ω, the fourth component of a projected point, is the distance along the camera's z axis.
+//! - Everything is computed in `f64`, in a fixed order, without fused or reassociated arithmetic: the pictures are the
+//!   same on every machine.
+//! - A mistake that a chapter discusses is a value of an option, never a copy of the code. The default is the right one.
+
+// The order of the modules is the order of the book; rustfmt would sort them by name.
+#![cfg_attr(rustfmt, rustfmt_skip)]
+
+pub mod framebuffer;
+pub mod line;
+pub mod area;
+pub mod scanline;
+pub mod real;
+pub mod interpolate;
+pub mod texture;
+pub mod transform;
+
+#[cfg(feature = "program")]
+pub mod program;
+
+pub use framebuffer::{Color, Framebuffer, Rect};

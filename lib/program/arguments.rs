@@ -1,0 +1,183 @@
+//! The command line that all chapters share.
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+use clap::error::ErrorKind;
+use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+
+use super::chapter::{Chapter, Mistake};
+use super::picture::Zoom;
+use crate::Framebuffer;
+
+/// The most pixels that `--size` may ask for: a picture of 8192×8192.
+const MAX_PIXELS: u64 = 1 << 26;
+
+/// What a program was asked to do.
+#[derive(Debug)]
+pub(super) struct Request {
+    pub(super) list: bool,
+    pub(super) all: bool,
+    pub(super) variant: Option<String>,
+    pub(super) out: Option<PathBuf>,
+    pub(super) size: Option<(u32, u32)>,
+    pub(super) zoom: Option<Zoom>,
+    pub(super) compare: Option<Comparison>,
+}
+
+/// What `--compare` compares with.
+#[derive(Debug)]
+pub(super) enum Comparison {
+    /// The remedy of the mistake.
+    Remedy,
+    /// The variant of this name.
+    With(String),
+}
+
+impl Request {
+    /// Reads the arguments, the program's own name first. Errors of clap print themselves, `--help` too.
+    pub(super) fn parse(
+        chapter: &Chapter,
+        arguments: impl IntoIterator<Item = OsString>,
+    ) -> Result<Self, clap::Error> {
+        let mut command = command(chapter);
+        let matches = command.try_get_matches_from_mut(arguments)?;
+        let text = |id: &str| matches.get_one::<String>(id).cloned();
+        let request = Self {
+            list: matches.get_flag("list"),
+            all: matches.get_flag("all"),
+            variant: text("variant"),
+            out: matches.get_one::<PathBuf>("out").cloned(),
+            size: matches.get_one("size").copied(),
+            zoom: matches.get_one("zoom").copied(),
+            compare: comparison(&matches),
+        };
+        if request.all && request.compare.is_some() {
+            let reason = "--compare takes one variant, not --all";
+            return Err(command.error(ErrorKind::ArgumentConflict, reason));
+        }
+        Ok(request)
+    }
+}
+
+fn comparison(matches: &ArgMatches) -> Option<Comparison> {
+    let mut names = matches.get_many::<String>("compare")?;
+    Some(names.next().map_or(Comparison::Remedy, |name| Comparison::With(name.clone())))
+}
+
+fn command(chapter: &Chapter) -> Command {
+    let option = |id: &'static str, value: &'static str, help: String| {
+        Arg::new(id).long(id).value_name(value).help(help)
+    };
+    let switch =
+        |id: &'static str, help: &'static str| Arg::new(id).long(id).action(ArgAction::SetTrue).help(help);
+    Command::new(chapter.name)
+        .about(chapter.question)
+        .override_usage(format!("cargo run --bin {} -- [VARIANT] [OPTIONS]", chapter.name))
+        .after_help(format!(
+            "Variants:\n{}\nWritten files are printed on standard output, a line each.",
+            list(chapter)
+        ))
+        .max_term_width(100)
+        .disable_version_flag(true)
+        .arg(Arg::new("variant").value_name("VARIANT").help(format!(
+            "The picture to draw [default: {}]",
+            chapter.lead().name
+        )))
+        .arg(switch("list", "List the variants: what each is called and what to look for").exclusive(true))
+        .arg(switch("all", "Draw all variants").conflicts_with("variant"))
+        .arg(
+            option("out", "PATH", format!("Where to write: a file (.png .bmp .tga .ppm) or a folder [default: out/{}]", chapter.name))
+                .value_parser(value_parser!(PathBuf)),
+        )
+        .arg(
+            option("size", "WxH", "Size of the picture in pixels, such as 1920x1080".to_owned())
+                .value_parser(parse_size),
+        )
+        .arg(
+            option(
+                "zoom",
+                "N[@X,Y]",
+                "Draw each pixel as N×N, around the pixel (X, Y), y up from the bottom; from 8 on with a grid".to_owned(),
+            )
+            .value_parser(parse_zoom),
+        )
+        .arg(
+            option(
+                "compare",
+                "OTHER",
+                "Draw this | OTHER | where they differ; OTHER is a mistake's remedy unless told".to_owned(),
+            )
+            .num_args(0..=1),
+        )
+}
+
+/// The variants of a chapter, a line each: name, then what to look for.
+pub(super) fn list(chapter: &Chapter) -> String {
+    let width = chapter.variants.iter().map(|variant| variant.name.len()).max().unwrap_or(0);
+    let line = |variant: &super::Variant| {
+        let mistake = match variant.mistake {
+            Mistake::No => String::new(),
+            Mistake::MendedBy(remedy) => format!(" [mistake; remedy: {remedy}]"),
+            Mistake::Unmended => " [mistake]".to_owned(),
+        };
+        format!("  {:width$}  {}{mistake}\n", variant.name, variant.look)
+    };
+    chapter.variants.iter().map(line).collect()
+}
+
+fn parse_size(text: &str) -> Result<(u32, u32), String> {
+    let sides = text.split_once(['x', 'X', '×']).and_then(|(width, height)| {
+        Some((width.trim().parse::<u32>().ok()?, height.trim().parse::<u32>().ok()?))
+    });
+    let (width, height) = sides.ok_or("expected WIDTHxHEIGHT, such as 640x480")?;
+    let allowed = 1..=Framebuffer::MAX_SIDE;
+    if !allowed.contains(&width) || !allowed.contains(&height) {
+        return Err(format!("each side must be 1 to {} pixels", Framebuffer::MAX_SIDE));
+    }
+    if u64::from(width) * u64::from(height) > MAX_PIXELS {
+        return Err(format!("more than {MAX_PIXELS} pixels"));
+    }
+    Ok((width, height))
+}
+
+fn parse_zoom(text: &str) -> Result<Zoom, String> {
+    let (factor, center) = match text.split_once('@') {
+        None => (text, None),
+        Some((factor, pixel)) => {
+            let coordinates = pixel
+                .split_once(',')
+                .and_then(|(x, y)| Some((x.trim().parse::<i32>().ok()?, y.trim().parse::<i32>().ok()?)));
+            (factor, Some(coordinates.ok_or("expected N@X,Y, such as 12@200,200")?))
+        }
+    };
+    let allowed = 1..=Zoom::MAX_FACTOR;
+    let factor = factor.trim().parse::<u32>().ok().filter(|factor| allowed.contains(factor));
+    let factor = factor.ok_or(format!("the factor must be a whole number from 1 to {}", Zoom::MAX_FACTOR))?;
+    Ok(Zoom { factor, center })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes() {
+        assert_eq!(parse_size("640x480"), Ok((640, 480)));
+        assert_eq!(parse_size("16384x1"), Ok((16384, 1)));
+        for bad in
+            ["", "640", "640x", "x480", "0x480", "-1x5", "640x480x3", "16385x1", "16384x16384", "1e3x5"]
+        {
+            assert!(parse_size(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn zooms() {
+        assert_eq!(parse_zoom("8"), Ok(Zoom { factor: 8, center: None }));
+        assert_eq!(parse_zoom("12@3,-4"), Ok(Zoom { factor: 12, center: Some((3, -4)) }));
+        for bad in ["", "0", "65", "x", "8@", "8@1", "8@1,2,3", "8@1;2"] {
+            assert!(parse_zoom(bad).is_err(), "{bad}");
+        }
+    }
+}

@@ -1,0 +1,31 @@
+//! Beside the renderer: what the `main`s of all chapters share. The renderer never imports it.
+//!
+//! A chapter is a table of variants ([`Chapter`]); a variant is one picture. From the table come `--list`, the drawing
+//! itself, the snapshots and the tests.
+//!
+//! ```
+//! use rasterbook::program::{Chapter, Variant};
+//! use rasterbook::{Color, Framebuffer};
+//!
+//! fn dot(framebuffer: &mut Framebuffer) {
+//!     framebuffer.set(1, 1, Color::RED);
+//! }
+//!
+//! const CHAPTER: Chapter = Chapter {
+//!     name: "ch00_example",
+//!     question: "How does a dot get onto the screen?",
+//!     variants: &[Variant::new("dot", dot, "one red pixel at (1, 1)").size(4, 4)],
+//! };
+//! assert_eq!(CHAPTER.lead().draw(4, 4).get(1, 1), Some(Color::RED));
+//! // fn main() -> std::process::ExitCode { CHAPTER.main() }
+//! ```
+
+mod arguments;
+mod chapter;
+mod failure;
+mod output;
+pub mod picture;
+mod run;
+
+pub use chapter::{Chapter, Variant};
+pub use failure::Failure;

@@ -1,0 +1,122 @@
+//! Where pictures go: file names, formats, and writing without ever leaving half a file behind.
+
+use std::fs;
+use std::io::{Cursor, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+use image::{ImageFormat, RgbImage};
+
+use super::Failure;
+use crate::Framebuffer;
+
+/// Image formats that are often asked for and not written here.
+const UNSUPPORTED: [&str; 8] = ["jpg", "jpeg", "gif", "webp", "tif", "tiff", "svg", "pdf"];
+
+/// Where the pictures of one run go.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) enum Destination {
+    /// A single picture, in the format that its extension names.
+    File(PathBuf),
+    /// Any number of pictures, as PNG files named for their variants.
+    Folder(PathBuf),
+}
+
+impl Destination {
+    /// `--out PATH`: a file if it ends in a known image extension, else a folder.
+    pub(super) fn new(path: PathBuf) -> Result<Self, Failure> {
+        let extension =
+            path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
+        match extension.as_deref() {
+            Some("png" | "bmp" | "tga" | "ppm") => Ok(Self::File(path)),
+            Some(other) if UNSUPPORTED.contains(&other) => Err(Failure::Usage(format!(
+                "cannot write {}: the formats are .png .bmp .tga .ppm",
+                path.display()
+            ))),
+            _ => Ok(Self::Folder(path)),
+        }
+    }
+
+    /// Writes the picture called `name`, and says where.
+    pub(super) fn write(&self, name: &str, picture: &Framebuffer) -> Result<PathBuf, Failure> {
+        let path = match self {
+            Self::File(path) => path.clone(),
+            Self::Folder(folder) => folder.join(format!("{name}.png")),
+        };
+        let format = ImageFormat::from_path(&path).unwrap_or(ImageFormat::Png);
+        let bytes = encode(picture, format).map_err(|error| cannot_write(&path, &error))?;
+        replace(&path, &bytes)?;
+        Ok(path)
+    }
+}
+
+fn encode(picture: &Framebuffer, format: ImageFormat) -> Result<Vec<u8>, image::ImageError> {
+    let channels = picture.rows_from_top().flatten().flat_map(|color| color.channels()).collect();
+    let image = RgbImage::from_raw(picture.width(), picture.height(), channels).unwrap_or_default();
+    let mut bytes = Cursor::new(Vec::new());
+    image.write_to(&mut bytes, format)?;
+    Ok(bytes.into_inner())
+}
+
+/// Writes a whole file or nothing: under another name first, which then takes the place of the old file.
+fn replace(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    fs::create_dir_all(folder)
+        .map_err(|error| Failure::Runtime(format!("cannot make the folder {}: {error}", folder.display())))?;
+    let mut name = path.file_name().unwrap_or_default().to_owned();
+    name.push(format!(".{}.part", std::process::id()));
+    let part = folder.join(name);
+    let written = fs::write(&part, bytes).and_then(|()| fs::rename(&part, path));
+    written.map_err(|error| {
+        let _ = fs::remove_file(&part);
+        cannot_write(path, &error)
+    })
+}
+
+fn cannot_write(path: &Path, error: &dyn std::error::Error) -> Failure {
+    Failure::Runtime(format!("cannot write {}: {error}", path.display()))
+}
+
+/// A line on standard output.
+pub(super) fn say(line: &str) -> Result<(), Failure> {
+    let mut stdout = std::io::stdout().lock();
+    let said = stdout
+        .write_all(line.as_bytes())
+        .and_then(|()| stdout.write_all(b"\n"))
+        .and_then(|()| stdout.flush());
+    said.map_err(|error| match error.kind() {
+        ErrorKind::BrokenPipe => Failure::ClosedPipe,
+        _ => Failure::Runtime(format!("cannot write to standard output: {error}")),
+    })
+}
+
+/// A line on standard error; nobody is told if that fails.
+pub(super) fn note(line: &str) {
+    let _ = writeln!(std::io::stderr(), "{line}");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_and_folders() {
+        let of = |path: &str| Destination::new(PathBuf::from(path));
+        assert_eq!(of("a/b.png"), Ok(Destination::File("a/b.png".into())));
+        assert_eq!(of("b.TGA"), Ok(Destination::File("b.TGA".into())));
+        assert_eq!(of("pictures"), Ok(Destination::Folder("pictures".into())));
+        assert_eq!(of("v1.2"), Ok(Destination::Folder("v1.2".into())));
+        assert!(matches!(of("a.jpg"), Err(Failure::Usage(_))));
+    }
+
+    #[test]
+    fn every_format_holds_the_picture() {
+        let mut picture = Framebuffer::new(3, 2);
+        picture.set(2, 1, crate::Color::rgb(10, 20, 30));
+        for format in [ImageFormat::Png, ImageFormat::Bmp, ImageFormat::Tga, ImageFormat::Pnm] {
+            let bytes = encode(&picture, format).expect("a small picture");
+            let read = image::load_from_memory_with_format(&bytes, format).expect("just written").to_rgb8();
+            assert_eq!(read.dimensions(), (3, 2));
+            assert_eq!(read.get_pixel(2, 0).0, [10, 20, 30], "{format:?}");
+        }
+    }
+}

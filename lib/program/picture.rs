@@ -1,0 +1,185 @@
+//! Pictures made of pictures: enlarged, side by side, and where two of them differ.
+
+use crate::{Color, Framebuffer, Rect};
+
+/// How a picture is enlarged so that its pixels can be seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Zoom {
+    /// Each pixel becomes a block of factor × factor pixels.
+    pub factor: u32,
+    /// The pixel around which to cut, framebuffer coordinates; the middle of the picture if there is none.
+    pub center: Option<(i32, i32)>,
+}
+
+impl Zoom {
+    /// The largest factor.
+    pub const MAX_FACTOR: u32 = 64;
+    /// From this factor on, a thin grid separates the pixels.
+    const GRID_FROM: u32 = 8;
+    /// The part that is shown fits into so many pixels when it is enlarged.
+    const SHOWN: (u32, u32) = (1280, 960);
+
+    /// The part of a picture that is shown: around the center, moved so that it lies inside the picture.
+    fn part(self, whole: Rect) -> Rect {
+        let range = |center: Option<i32>, side: i32, shown: u32| {
+            let count = if self.factor == 1 { side } else { side.min((shown / self.factor) as i32) };
+            let first = (center.unwrap_or(side / 2) - count / 2).clamp(0, side - count);
+            (first, first + count)
+        };
+        let (left, right) = range(self.center.map(|(x, _)| x), whole.right, Self::SHOWN.0);
+        let (bottom, top) = range(self.center.map(|(_, y)| y), whole.top, Self::SHOWN.1);
+        Rect { left, bottom, right, top }
+    }
+}
+
+const GRID: Color = Color::gray(80);
+const GAP: Color = Color::gray(128);
+const GAP_WIDTH: u32 = 4;
+
+/// The whole picture, each pixel as a block of factor × factor.
+///
+/// # Panics
+/// As [`Framebuffer::new`] does, if the result is too large.
+#[must_use]
+pub fn enlarged(picture: &Framebuffer, factor: u32) -> Framebuffer {
+    blocks(picture, picture.rect(), factor)
+}
+
+/// The part of a picture around the zoom's center, each pixel as a block.
+#[must_use]
+pub fn zoomed(picture: &Framebuffer, zoom: Zoom) -> Framebuffer {
+    blocks(picture, zoom.part(picture.rect()), zoom.factor)
+}
+
+/// A part of a picture, each pixel as a block, with a thin grid if the blocks are large enough.
+fn blocks(picture: &Framebuffer, part: Rect, factor: u32) -> Framebuffer {
+    let block = factor as i32;
+    let line = i32::from(factor >= Zoom::GRID_FROM);
+    let mut result =
+        Framebuffer::new(part.columns().len() as u32 * factor, part.rows().len() as u32 * factor);
+    result.clear(GRID);
+    for y in part.rows() {
+        for x in part.columns() {
+            let (left, bottom) = ((x - part.left) * block, (y - part.bottom) * block);
+            let square = Rect { left, bottom, right: left + block - line, top: bottom + block - line };
+            result.fill(square, picture.get(x, y).unwrap_or_default());
+        }
+    }
+    result
+}
+
+/// Copies a picture into another one, its lower left corner to (left, bottom); what does not fit is left out.
+pub fn paste(into: &mut Framebuffer, picture: &Framebuffer, left: i32, bottom: i32) {
+    for y in picture.rect().rows() {
+        for x in picture.rect().columns() {
+            into.set(left + x, bottom + y, picture.get(x, y).unwrap_or_default());
+        }
+    }
+}
+
+/// Where two pictures of equal size differ: magenta on a dim gray copy of the first, and how many pixels that are.
+///
+/// `None` if the sizes differ.
+#[must_use]
+pub fn difference(this: &Framebuffer, that: &Framebuffer) -> Option<(Framebuffer, usize)> {
+    if this.rect() != that.rect() {
+        return None;
+    }
+    let mut result = Framebuffer::new(this.width(), this.height());
+    let mut count = 0;
+    for y in this.rect().rows() {
+        for x in this.rect().columns() {
+            let color = this.get(x, y).unwrap_or_default();
+            let differs = that.get(x, y) != Some(color);
+            count += usize::from(differs);
+            result.set(x, y, if differs { Color::rgb(255, 0, 255) } else { dim(color) });
+        }
+    }
+    Some((result, count))
+}
+
+/// A dark gray of the color's brightness.
+fn dim(color: Color) -> Color {
+    let [red, green, blue] = color.channels().map(u32::from);
+    Color::gray(((red * 2 + green * 5 + blue) / 8 / 4) as u8)
+}
+
+/// Pictures beside each other, from left to right, with a gray gap between them; aligned at the top.
+///
+/// `None` if the result would be too large for a framebuffer.
+#[must_use]
+pub fn side_by_side(pictures: &[Framebuffer]) -> Option<Framebuffer> {
+    let gaps = GAP_WIDTH * (pictures.len() as u32).checked_sub(1)?;
+    let width = pictures.iter().map(Framebuffer::width).sum::<u32>() + gaps;
+    let height = pictures.iter().map(Framebuffer::height).max()?;
+    if width > Framebuffer::MAX_SIDE {
+        return None;
+    }
+    let mut result = Framebuffer::new(width, height);
+    result.clear(GAP);
+    let mut left = 0;
+    for picture in pictures {
+        let bottom = (height - picture.height()) as i32;
+        paste(&mut result, picture, left, bottom);
+        left += (picture.width() + GAP_WIDTH) as i32;
+    }
+    Some(result)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn dots(width: u32, height: u32, dots: &[(i32, i32)]) -> Framebuffer {
+        let mut picture = Framebuffer::new(width, height);
+        for &(x, y) in dots {
+            picture.set(x, y, Color::RED);
+        }
+        picture
+    }
+
+    #[test]
+    fn zoom_makes_blocks_and_a_grid() {
+        let small = zoomed(&dots(3, 2, &[(1, 1)]), Zoom { factor: 2, center: None });
+        assert_eq!((small.width(), small.height()), (6, 4));
+        let red = |x, y| small.get(x, y) == Some(Color::RED);
+        assert!(red(2, 2) && red(3, 3) && !red(1, 2) && !red(4, 3) && !red(2, 1));
+
+        let large = zoomed(&dots(3, 2, &[(1, 1)]), Zoom { factor: 8, center: None });
+        assert_eq!(large.get(8, 8), Some(Color::RED));
+        assert_eq!(large.get(14, 14), Some(Color::RED));
+        assert_eq!(large.get(15, 14), Some(GRID));
+        assert_eq!(large.get(14, 15), Some(GRID));
+    }
+
+    #[test]
+    fn zoom_cuts_around_its_center_and_stays_inside() {
+        let picture = dots(640, 480, &[(0, 0), (639, 479)]);
+        for (center, corner) in [((0, 0), (0, 0)), ((639, 479), (1279 - 31, 959 - 31))] {
+            let part = zoomed(&picture, Zoom { factor: 32, center: Some(center) });
+            assert_eq!((part.width(), part.height()), (1280, 960));
+            assert_eq!(part.get(corner.0, corner.1), Some(Color::RED));
+        }
+    }
+
+    #[test]
+    fn difference_counts_and_marks() {
+        let (marked, count) =
+            difference(&dots(4, 4, &[(1, 1), (2, 2)]), &dots(4, 4, &[(1, 1), (3, 0)])).expect("same size");
+        assert_eq!(count, 2);
+        assert_eq!(marked.get(2, 2), Some(Color::rgb(255, 0, 255)));
+        assert_eq!(marked.get(3, 0), Some(Color::rgb(255, 0, 255)));
+        assert_ne!(marked.get(1, 1), Some(Color::rgb(255, 0, 255)));
+        assert!(difference(&dots(4, 4, &[]), &dots(4, 5, &[])).is_none());
+    }
+
+    #[test]
+    fn side_by_side_has_gaps() {
+        let both = side_by_side(&[dots(2, 2, &[(0, 1)]), dots(2, 3, &[(1, 0)])]).expect("small enough");
+        assert_eq!((both.width(), both.height()), (8, 3));
+        assert_eq!(both.get(0, 2), Some(Color::RED), "aligned at the top");
+        assert_eq!(both.get(3, 1), Some(GAP));
+        assert_eq!(both.get(7, 0), Some(Color::RED));
+        assert!(side_by_side(&[dots(16_000, 1, &[]), dots(16_000, 1, &[])]).is_none());
+    }
+}

@@ -1,0 +1,136 @@
+//! What a chapter's program does with its arguments.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use super::Failure;
+use super::arguments::{Comparison, Request, list};
+use super::chapter::{Chapter, Mistake, Variant};
+use super::output::{Destination, note, say};
+use super::picture::{Zoom, difference, side_by_side, zoomed};
+use crate::Framebuffer;
+
+/// Reads the arguments, does what they say, reports.
+pub(super) fn main(chapter: &Chapter) -> ExitCode {
+    let request = match Request::parse(chapter, std::env::args_os()) {
+        Ok(request) => request,
+        Err(error) => {
+            // Help goes to standard output, errors to standard error; a closed pipe is not worth a word.
+            let _ = error.print();
+            return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
+        }
+    };
+    match run(chapter, &request) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            if failure != Failure::ClosedPipe {
+                note(&failure.to_string());
+            }
+            ExitCode::from(failure.exit_code())
+        }
+    }
+}
+
+fn run(chapter: &Chapter, request: &Request) -> Result<(), Failure> {
+    if request.list {
+        return say(list(chapter).trim_end());
+    }
+    let default = || PathBuf::from("out").join(chapter.name);
+    let destination = Destination::new(request.out.clone().unwrap_or_else(default))?;
+    if request.all {
+        if matches!(destination, Destination::File(_)) && chapter.variants.len() > 1 {
+            return Err(Failure::Usage("--all draws several pictures: --out must name a folder".to_owned()));
+        }
+        return chapter.variants.iter().try_for_each(|variant| draw_one(variant, request, &destination));
+    }
+    let variant = match &request.variant {
+        Some(name) => find(chapter, name)?,
+        None => chapter.lead(),
+    };
+    match &request.compare {
+        None => draw_one(variant, request, &destination),
+        Some(comparison) => {
+            draw_comparison(variant, other(chapter, variant, comparison)?, request, &destination)
+        }
+    }
+}
+
+fn find<'a>(chapter: &'a Chapter, name: &str) -> Result<&'a Variant, Failure> {
+    chapter.find(name).ok_or_else(|| {
+        let names: Vec<&str> = chapter.variants.iter().map(|variant| variant.name).collect();
+        Failure::Usage(format!("{} has no variant '{name}'; it has: {}", chapter.name, names.join(", ")))
+    })
+}
+
+/// The variant to compare with.
+fn other<'a>(
+    chapter: &'a Chapter,
+    variant: &Variant,
+    comparison: &Comparison,
+) -> Result<&'a Variant, Failure> {
+    match (comparison, variant.mistake) {
+        (Comparison::With(name), _) => find(chapter, name),
+        (Comparison::Remedy, Mistake::MendedBy(remedy)) => find(chapter, remedy),
+        (Comparison::Remedy, _) => Err(Failure::Usage(format!(
+            "'{}' has no remedy to be compared with: name the other variant, --compare OTHER",
+            variant.name
+        ))),
+    }
+}
+
+/// The picture of a variant as it was asked for.
+fn picture(variant: &Variant, request: &Request) -> Framebuffer {
+    let (width, height) = request.size.unwrap_or(variant.size);
+    variant.draw(width, height)
+}
+
+/// The picture, enlarged if that was asked for.
+fn enlarged(picture: Framebuffer, zoom: Option<Zoom>) -> Result<Framebuffer, Failure> {
+    let Some(zoom) = zoom else { return Ok(picture) };
+    if let Some((x, y)) = zoom.center.filter(|&(x, y)| !picture.rect().contains(x, y)) {
+        return Err(Failure::Usage(format!(
+            "the pixel {x},{y} is outside the picture of {}×{} pixels",
+            picture.width(),
+            picture.height()
+        )));
+    }
+    Ok(zoomed(&picture, zoom))
+}
+
+/// The file name of a picture, without extension.
+fn name_of(variant: &Variant, request: &Request) -> String {
+    match request.zoom {
+        None => variant.name.to_owned(),
+        Some(zoom) => format!("{}-zoom{}", variant.name, zoom.factor),
+    }
+}
+
+fn draw_one(variant: &Variant, request: &Request, destination: &Destination) -> Result<(), Failure> {
+    let picture = enlarged(picture(variant, request), request.zoom)?;
+    let path = destination.write(&name_of(variant, request), &picture)?;
+    say(&path.display().to_string())
+}
+
+fn draw_comparison(
+    this: &Variant,
+    that: &Variant,
+    request: &Request,
+    destination: &Destination,
+) -> Result<(), Failure> {
+    let [first, second] = [this, that].map(|variant| picture(variant, request));
+    let Some((marked, count)) = difference(&first, &second) else {
+        let reason = format!("'{}' and '{}' differ in size: give --size", this.name, that.name);
+        return Err(Failure::Usage(reason));
+    };
+    let total = first.width() as usize * first.height() as usize;
+    let panels = [first, second, marked]
+        .into_iter()
+        .map(|panel| enlarged(panel, request.zoom))
+        .collect::<Result<Vec<_>, _>>()?;
+    let picture = side_by_side(&panels).ok_or_else(|| {
+        Failure::Usage("three such pictures are too wide: give a smaller --size".to_owned())
+    })?;
+    let path = destination.write(&format!("{}--{}", name_of(this, request), that.name), &picture)?;
+    note(&format!("{count} of {total} pixels differ"));
+    say(&path.display().to_string())
+}
