@@ -8,7 +8,7 @@
 
 use std::process::ExitCode;
 
-use glam::{DVec2, dvec2};
+use glam::dvec2;
 use rasterbook::interpolate::{barycentric_weights, step_values};
 use rasterbook::program::{Chapter, Variant, picture};
 use rasterbook::scanline::{Corner, StepLimit, Walk};
@@ -25,10 +25,10 @@ pub(crate) const CHAPTER: Chapter = Chapter {
             .source("section 3.3, Figures 3-10 and 3-11"),
         Variant::new("weights", weights, "the weight of each corner by areas: its lines of equal weight run along the opposite edge")
             .source("section 3.2.2, Figures 3-6 and 3-7"),
-        Variant::new("spikes", spikes, "orange: pixels whose value is out of the range of the corners, stepped past an edge's end")
+        Variant::new("spikes", spikes, "orange: values out of the range of the corners, at the tips (past the end of an edge) and at the ends of rows")
             .source("section 11.4")
             .mended_by("limited"),
-        Variant::new("limited-edges", limited_edges, "the same, limited along the edges as in the book: the last pixel of a row may still pass the end")
+        Variant::new("limited-edges", limited_edges, "the same, limited along the edges as in the book: the tips are mended, the ends of rows are not")
             .source("section 11.4"),
         Variant::new("limited", limited, "the same, limited along the rows too: no orange pixel is left"),
     ],
@@ -102,43 +102,29 @@ fn weights(framebuffer: &mut Framebuffer) {
 // ANCHOR: spikes
 /// Values stepped past the ends of the edges.
 fn spikes(framebuffer: &mut Framebuffer) {
-    fan(framebuffer, StepLimit::Overrun);
+    confetti(framebuffer, StepLimit::Overrun);
 }
 
 /// Values limited along the edges.
 fn limited_edges(framebuffer: &mut Framebuffer) {
-    fan(framebuffer, StepLimit::Edges);
+    confetti(framebuffer, StepLimit::Edges);
 }
 
 /// Values limited along edges and rows.
 fn limited(framebuffer: &mut Framebuffer) {
-    fan(framebuffer, StepLimit::Everywhere);
+    confetti(framebuffer, StepLimit::Everywhere);
 }
 
-/// A fan of thin triangles on a screen of 80×60 pixels. All corners have values in 0..=1, drawn as blue; a value
-/// outside is drawn in orange.
-fn fan(framebuffer: &mut Framebuffer, limit: StepLimit) {
+/// Small triangles on a screen of 80×60 pixels, each at another fraction of a pixel. All corners have values in 0..=1,
+/// drawn as dark to bright blue; a value outside that range is drawn in orange.
+fn confetti(framebuffer: &mut Framebuffer, limit: StepLimit) {
     let mut screen = Framebuffer::new(80, 60);
     let window = screen.rect();
-    let rim: [DVec2; 9] = [
-        dvec2(74.6, 8.7),
-        dvec2(76.3, 20.4),
-        dvec2(72.8, 33.6),
-        dvec2(63.4, 45.3),
-        dvec2(49.7, 53.6),
-        dvec2(34.2, 56.8),
-        dvec2(20.4, 52.3),
-        dvec2(9.6, 41.7),
-        dvec2(4.3, 27.6),
-    ];
-    for (i, pair) in rim.windows(2).enumerate() {
-        // Bright at one end of the rim's edge, dark at the other.
-        let (first, second) = if i % 2 == 0 { (0.0, 1.0) } else { (1.0, 0.0) };
-        let corners = [
-            corner(38.6, 6.3, [0.5]),
-            corner(pair[0].x, pair[0].y, [first]),
-            corner(pair[1].x, pair[1].y, [second]),
-        ];
+    for (column, row) in (0..6).flat_map(|row| (0..7).map(move |column| (column, row))) {
+        let (i, j) = (f64::from(column), f64::from(row));
+        let (x, y) = (2.2 + 11.13 * i, 2.6 + 9.41 * j + 0.27 * i);
+        let corners =
+            [corner(x, y, [0.0]), corner(x + 8.4, y + 1.7, [0.0]), corner(x + 1.8 + 0.7 * i, y + 7.6, [1.0])];
         step_values(corners, Walk { limit, ..Walk::default() }, window, |x, y, [value]| {
             let is_in_range = (-1e-9..=1.0 + 1e-9).contains(&value);
             let blue = Color::truncated([30.0 + 60.0 * value, 60.0 + 120.0 * value, 110.0 + 140.0 * value]);

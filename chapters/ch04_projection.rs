@@ -80,14 +80,14 @@ fn cubes(framebuffer: &mut Framebuffer, project: impl Fn(DVec3) -> DVec4 + Copy)
     ];
     for (i, color) in (0..).zip(colors) {
         let step = f64::from(i);
-        let center = dvec3(-240.0 + 120.0 * step, -90.0 + 40.0 * step, 400.0 + 220.0 * step);
-        draw_cube(framebuffer, project, center, 50.0, color);
+        let center = dvec3(-230.0 + 115.0 * step, -150.0 + 75.0 * step, 600.0 + 260.0 * step);
+        draw_cube(framebuffer, project, center, 70.0, color);
     }
 }
 
 /// The cubes in perspective.
 fn cube(framebuffer: &mut Framebuffer) {
-    cubes(framebuffer, |point| perspective(point, 400.0));
+    cubes(framebuffer, |point| perspective(point, 520.0));
 }
 
 /// The cubes without perspective.

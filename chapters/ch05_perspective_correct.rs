@@ -8,7 +8,7 @@
 
 use std::process::ExitCode;
 
-use glam::dvec3;
+use glam::{dvec2, dvec3};
 use rasterbook::interpolate::{Interpolation, Projected, step_parameter, step_values};
 use rasterbook::program::{Chapter, Variant};
 use rasterbook::scanline::{Corner, Walk};
@@ -116,15 +116,16 @@ fn square(framebuffer: &mut Framebuffer) {
 // ANCHOR: floor
 /// A checkered floor of two triangles, from below our feet to far away.
 fn checkered_floor(framebuffer: &mut Framebuffer, interpolation: Interpolation) {
+    framebuffer.clear(Color::rgb(70, 90, 70));
     framebuffer.fill(Rect { bottom: 240, ..framebuffer.rect() }, Color::rgb(120, 170, 220));
 
-    // The camera is 100 above the floor; a square of the floor measures 100.
+    // The camera is 100 above the floor and looks at the middle of a picture of 640×480.
     let corner = |x: f64, z: f64| {
-        let seen = vertex([x, -100.0, z], [x / 200.0, z / 200.0]);
-        Corner { position: seen.position * 4.0 + dvec3(320.0, 240.0, 0.0).truncate(), ..seen }
+        let seen = vertex([x, -100.0, z], [x / 240.0, z / 240.0]);
+        Corner { position: dvec2(320.0, 240.0) + seen.position * 4.0, ..seen }
     };
-    let near = [corner(-1500.0, 120.0), corner(1500.0, 120.0)];
-    let far = [corner(-1500.0, 4000.0), corner(1500.0, 4000.0)];
+    let near = [corner(-720.0, 120.0), corner(720.0, 120.0)];
+    let far = [corner(-720.0, 2520.0), corner(720.0, 2520.0)];
 
     let texture = Texture::checkerboard(Color::rgb(50, 60, 80), Color::rgb(235, 235, 225));
     for triangle in [[near[0], near[1], far[0]], [near[1], far[1], far[0]]] {

@@ -178,3 +178,193 @@ pub fn step_parameter<const N: usize>(
     }
 }
 // ANCHOR_END: step_parameter
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scanline::StepLimit;
+    use crate::transform::{perspective, perspective_divide};
+    use glam::{DVec3, dvec2, dvec3};
+    use proptest::prelude::*;
+
+    const WINDOW: Rect = Rect::sized(60, 60);
+
+    fn corners<const N: usize>(positions: [DVec2; 3], values: [[f64; N]; 3]) -> [Corner<[f64; N]>; 3] {
+        from_fn(|i| Corner { position: positions[i], attributes: values[i] })
+    }
+
+    /// The point of the screen that the walk stands for at each pixel: positions, interpolated like any value.
+    fn walk_points(positions: [DVec2; 3]) -> Vec<((i32, i32), DVec2)> {
+        let mut points = Vec::new();
+        step_values(
+            corners(positions, positions.map(|p| p.to_array())),
+            Walk::default(),
+            WINDOW,
+            |x, y, p| {
+                points.push(((x, y), DVec2::from(p)));
+            },
+        );
+        points
+    }
+
+    fn point() -> impl Strategy<Value = DVec2> {
+        (-10.0..70.0, -10.0..70.0).prop_map(DVec2::from)
+    }
+
+    fn whole_point() -> impl Strategy<Value = DVec2> {
+        (0..60, 0..60).prop_map(|(x, y)| dvec2(f64::from(x), f64::from(y)))
+    }
+
+    /// A triangle with some area, so that rounding stays small.
+    fn triangle(point: impl Strategy<Value = DVec2>) -> impl Strategy<Value = [DVec2; 3]> {
+        prop::array::uniform3(point)
+            .prop_filter("a sliver", |&[a, b, c]| twice_signed_area(a, b, c).abs() > 20.0)
+    }
+
+    fn is_near(a: f64, b: f64, scale: f64) -> bool {
+        (a - b).abs() <= 1e-7 * scale
+    }
+
+    proptest! {
+        #[test]
+        fn weights_sum_to_one_and_give_the_point_back(p in point(), t in triangle(point())) {
+            let w = barycentric_weights(p, t);
+            prop_assert!(is_near(w.iter().sum(), 1.0, 100.0));
+            prop_assert!((t[0] * w[0] + t[1] * w[1] + t[2] * w[2] - p).length() < 1e-6);
+            for i in 0..3 {
+                let at_corner = barycentric_weights(t[i], t);
+                prop_assert!((0..3).all(|j| is_near(at_corner[j], f64::from(i == j), 100.0)));
+            }
+        }
+
+        #[test]
+        fn steps_equal_area_weights_at_the_point_that_the_walk_stands_for(
+            t in triangle(point()), values in prop::array::uniform3(0.0..255.0),
+        ) {
+            let points = walk_points(t);
+            let mut i = 0;
+            step_values(corners(t, values.map(|v| [v])), Walk::default(), WINDOW, |x, y, [value]| {
+                let (pixel, point) = points[i];
+                assert_eq!(pixel, (x, y));
+                let weights = barycentric_weights(point, t);
+                let expected: f64 = (0..3).map(|i| weights[i] * values[i]).sum();
+                assert!(is_near(value, expected, 255.0 * 100.0), "{value} is not {expected}");
+                i += 1;
+            });
+            assert_eq!(i, points.len());
+        }
+
+        #[test]
+        fn the_point_is_at_most_one_pixel_away(t in triangle(point())) {
+            for ((x, y), point) in walk_points(t) {
+                let off = point - dvec2(f64::from(x), f64::from(y));
+                prop_assert!(off.x.abs() < 1.0 + 1e-6 && off.y.abs() < 1.0 + 1e-6, "{off} at ({x}, {y})");
+            }
+        }
+
+        #[test]
+        fn rows_of_whole_pixel_corners_are_met_exactly(t in triangle(whole_point())) {
+            // Across, a slanted side still lies between two pixels on most rows.
+            for ((x, y), point) in walk_points(t) {
+                prop_assert!((point.y - f64::from(y)).abs() < 1e-9, "{point} at ({x}, {y})");
+            }
+        }
+
+        #[test]
+        fn a_right_angle_of_whole_pixels_is_met_exactly(
+            a in whole_point(), width in 5..50, height in 5..50,
+        ) {
+            let (width, height) = (f64::from(width), f64::from(height));
+            for ((x, y), point) in walk_points([a, a + dvec2(width, 0.0), a + dvec2(0.0, height)]) {
+                prop_assert!((point - dvec2(f64::from(x), f64::from(y))).length() < 1e-9, "{point} at ({x}, {y})");
+            }
+        }
+
+        #[test]
+        fn both_forms_of_the_formula_agree(
+            w in prop::array::uniform2(0.1..100.0), v in prop::array::uniform2(-5.0..5.0), t in 0.0..1.0,
+        ) {
+            let [a, b] = from_fn(|i| Projected { w: w[i], values: [v[i]] });
+            let [book, usual] = [Interpolation::PerspectiveCorrect, Interpolation::Reciprocal].map(|i| i.between(a, b, t));
+            prop_assert!(is_near(book.w, usual.w, 100.0) && is_near(book.values[0], usual.values[0], 5.0));
+            prop_assert!((1.0 / book.w - ((1.0 - t) / a.w + t / b.w)).abs() < 1e-9, "1/ω changes evenly");
+        }
+
+        #[test]
+        fn single_precision_follows_double(w in prop::array::uniform2(0.5..20.0), v in prop::array::uniform2(0.0..1.0), t in 0.0..1.0) {
+            let of = |i: usize| Projected { w: w[i], values: [v[i]] };
+            let of32 = |i: usize| Projected { w: w[i] as f32, values: [v[i] as f32] };
+            let double: f64 = Interpolation::PerspectiveCorrect.between(of(0), of(1), t).values[0];
+            let single: f32 = Interpolation::PerspectiveCorrect.between(of32(0), of32(1), t as f32).values[0];
+            prop_assert!((double - f64::from(single)).abs() < 1e-5);
+        }
+
+        #[test]
+        fn perspective_correct_is_where_the_ray_meets_the_plane(
+            screen in triangle(point()), z in prop::array::uniform3(50.0..500.0), uv in prop::array::uniform3(prop::array::uniform2(0.0..1.0)),
+        ) {
+            // Points in space that are seen at the screen positions.
+            const NEAR: f64 = 40.0;
+            let space: [DVec3; 3] = from_fn(|i| dvec3(screen[i].x * z[i] / NEAR, screen[i].y * z[i] / NEAR, z[i]));
+            let seen = space.map(|p| perspective_divide(perspective(p, NEAR)).truncate());
+            let mut points = walk_points(seen).into_iter();
+            let normal = (space[1] - space[0]).cross(space[2] - space[0]);
+            prop_assume!(normal.length() > 1.0);
+
+            let projected = from_fn(|i| Corner { position: seen[i], attributes: Projected { w: z[i], values: uv[i] } });
+            step_parameter(projected, Interpolation::PerspectiveCorrect, Walk::default(), WINDOW, |x, y, found| {
+                let (pixel, point) = points.next().expect("a point for each pixel");
+                assert_eq!(pixel, (x, y));
+                // The ray from the eye through the point, and where it meets the plane of the triangle.
+                let ray = dvec3(point.x / NEAR, point.y / NEAR, 1.0);
+                let hit = ray * (normal.dot(space[0]) / normal.dot(ray));
+                // The weights there, by areas in space.
+                let area = |b: DVec3, c: DVec3| (b - hit).cross(c - hit).dot(normal) / normal.length_squared();
+                let w = [area(space[1], space[2]), area(space[2], space[0]), area(space[0], space[1])];
+                if hit.z > 40.0 && hit.z < 600.0 {
+                    for k in 0..2 {
+                        let expected: f64 = (0..3).map(|i| w[i] * uv[i][k]).sum();
+                        assert!((found.values[k] - expected).abs() < 1e-5, "{} is not {expected} at ({x}, {y})", found.values[k]);
+                    }
+                    assert!(is_near(found.w, hit.z, 1e4));
+                }
+            });
+        }
+    }
+
+    #[test]
+    fn interpolation_at_the_ends_and_between() {
+        let a = Projected { w: 1.0, values: [0.0] };
+        let b = Projected { w: 3.0, values: [8.0] };
+        for interpolation in
+            [Interpolation::Affine, Interpolation::PerspectiveCorrect, Interpolation::Reciprocal]
+        {
+            assert_eq!(interpolation.between(a, b, 0.0).values, [0.0]);
+            assert!(is_near(interpolation.between(a, b, 1.0).values[0], 8.0, 1.0));
+        }
+        // Half the way on the screen is a quarter of the way in space: the far end is squeezed.
+        assert_eq!(Interpolation::Affine.between(a, b, 0.5), Projected { w: 2.0, values: [4.0] });
+        assert_eq!(Interpolation::PerspectiveCorrect.between(a, b, 0.5), Projected { w: 1.5, values: [2.0] });
+    }
+
+    #[test]
+    fn odd_numbers_neither_panic_nor_hang() {
+        let odd = [0.0, -1.0, 1e30, -1e30, f64::NAN, f64::INFINITY, f64::MAX];
+        for (&x, &w) in odd.iter().flat_map(|x| odd.iter().map(move |w| (x, w))) {
+            let triangle = [dvec2(x, 3.0), dvec2(50.0, x), dvec2(10.0, 40.0)];
+            for limit in [StepLimit::Overrun, StepLimit::Edges, StepLimit::Everywhere] {
+                let walk = Walk { limit, ..Walk::default() };
+                let mut count = 0;
+                step_values(corners(triangle, [[w]; 3]), walk, WINDOW, |_, _, _| count += 1);
+                for interpolation in
+                    [Interpolation::Affine, Interpolation::PerspectiveCorrect, Interpolation::Reciprocal]
+                {
+                    let projected = triangle
+                        .map(|position| Corner { position, attributes: Projected { w, values: [x] } });
+                    step_parameter(projected, interpolation, walk, Rect::sized(1, 1), |_, _, _| count += 1);
+                }
+                assert!(count <= 3 * 60 * 60, "a triangle covers no pixel more than twice");
+            }
+        }
+    }
+}

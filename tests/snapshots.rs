@@ -1,2 +1,92 @@
-//! x
-fn main() {}
+//! Every picture of every chapter, drawn by the real program and compared pixel by pixel with the accepted one.
+//!
+//! Each variant is a test of its own: `cargo test --test snapshots affine`. Two more see that no variant is without a
+//! snapshot and no snapshot without a variant.
+
+#[path = "support/chapters.rs"]
+mod chapters;
+#[path = "support/pictures.rs"]
+mod pictures;
+#[path = "support/review.rs"]
+mod review;
+
+use std::collections::BTreeSet;
+use std::path::Path;
+use std::process::{Command, ExitCode};
+
+use chapters::CHAPTERS;
+use libtest_mimic::{Arguments, Failed, Trial};
+
+fn main() -> ExitCode {
+    // A failed comparison is told once, by its test.
+    std::panic::set_hook(Box::new(|_| {}));
+    let mut trials: Vec<Trial> = all_pictures().map(Picture::trial).collect();
+    trials.push(Trial::test("no_snapshot_without_a_variant", no_orphan));
+    let conclusion = libtest_mimic::run(&Arguments::from_args(), trials);
+    if let Some(page) = review::write_page(&pictures::failure_folder()) {
+        eprintln_page(&page);
+    }
+    conclusion.exit_code()
+}
+
+#[expect(clippy::print_stderr, reason = "the report of a test program")]
+fn eprintln_page(page: &Path) {
+    eprintln!("All pictures that wait for a review: {}", page.display());
+}
+
+/// A picture that some program can draw.
+struct Picture {
+    program: &'static str,
+    variant: &'static str,
+    name: String,
+}
+
+fn all_pictures() -> impl Iterator<Item = Picture> {
+    CHAPTERS.iter().flat_map(|&(chapter, program)| {
+        chapter.variants.iter().map(move |variant| Picture {
+            program,
+            variant: variant.name,
+            name: format!("{}__{}", chapter.name, variant.name),
+        })
+    })
+}
+
+impl Picture {
+    fn trial(self) -> Trial {
+        Trial::test(self.name.clone(), move || {
+            let png = self.draw()?;
+            pictures::assert_picture(&self.name, png).map_err(Failed::from)
+        })
+    }
+
+    /// Runs the program as a reader would, and takes the file that it wrote.
+    fn draw(&self) -> Result<Vec<u8>, Failed> {
+        let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{}.png", self.name));
+        let output = Command::new(self.program).arg(self.variant).arg("--out").arg(&file).output()?;
+        if !output.status.success() {
+            return Err(String::from_utf8_lossy(&output.stderr).into_owned().into());
+        }
+        let png = std::fs::read(&file)?;
+        std::fs::remove_file(&file)?;
+        Ok(png)
+    }
+}
+
+fn no_orphan() -> Result<(), Failed> {
+    let wanted: BTreeSet<String> = all_pictures()
+        .flat_map(|picture| [format!("{}.snap", picture.name), format!("{}.snap.png", picture.name)])
+        .collect();
+    let mut orphans = Vec::new();
+    for entry in std::fs::read_dir(pictures::snapshot_folder())? {
+        let name = entry?.file_name().to_string_lossy().into_owned();
+        let is_pending = name.contains(".snap.new");
+        if !is_pending && !wanted.contains(&name) {
+            orphans.push(name);
+        }
+    }
+    if orphans.is_empty() {
+        return Ok(());
+    }
+    Err(format!("in tests/snapshots, but drawn by no variant (remove or rename): {}", orphans.join(", "))
+        .into())
+}

@@ -27,5 +27,5 @@ mod output;
 pub mod picture;
 mod run;
 
-pub use chapter::{Chapter, Variant};
+pub use chapter::{Chapter, Mistake, Variant};
 pub use failure::Failure;

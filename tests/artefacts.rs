@@ -1,0 +1,133 @@
+//! Each deliberate mistake shows its artefact, and its remedy does not: measured in the pictures themselves.
+
+#[path = "support/chapters.rs"]
+mod chapters;
+
+use chapters::{CHAPTERS, variant};
+use rasterbook::program::Mistake;
+use rasterbook::{Color, Framebuffer};
+
+/// The mistakes that a test below looks for.
+const TESTED: &[&str] = &["broken", "overshoot", "shared-edge", "spikes", "affine", "floor-affine"];
+
+#[test]
+fn every_mistake_has_a_test_and_a_real_remedy() {
+    for (chapter, _) in CHAPTERS {
+        for variant in chapter.variants {
+            match variant.mistake {
+                Mistake::No => assert!(!TESTED.contains(&variant.name), "{} is no mistake", variant.name),
+                Mistake::MendedBy(remedy) => {
+                    let remedy = chapter.find(remedy).expect("the remedy is a variant of the same chapter");
+                    assert_eq!(remedy.mistake, Mistake::No);
+                    assert_eq!(remedy.size, variant.size, "comparable");
+                }
+                Mistake::Unmended => {}
+            }
+            let is_tested = variant.mistake == Mistake::No || TESTED.contains(&variant.name);
+            assert!(is_tested, "no test here looks for the artefact of {} {}", chapter.name, variant.name);
+        }
+    }
+}
+
+#[test]
+fn names_are_unique_and_look_says_something() {
+    for (chapter, _) in CHAPTERS {
+        for (i, variant) in chapter.variants.iter().enumerate() {
+            assert!(chapter.variants[..i].iter().all(|other| other.name != variant.name), "{}", variant.name);
+            assert!(variant.look.len() > 20, "{}: what is to be looked for?", variant.name);
+        }
+    }
+}
+
+fn draw(chapter: &str, name: &str) -> Framebuffer {
+    let variant = variant(chapter, name);
+    variant.draw(variant.size.0, variant.size.1)
+}
+
+fn count(picture: &Framebuffer, is_meant: impl Fn(i32, i32, Color) -> bool) -> usize {
+    let pixels = picture.rect().rows().flat_map(|y| picture.rect().columns().map(move |x| (x, y)));
+    pixels.filter(|&(x, y)| is_meant(x, y, picture.get(x, y).expect("inside"))).count()
+}
+
+#[test]
+fn stepping_a_steep_line_by_x_leaves_gaps() {
+    // Rows that a steep ray from (240, 240) to (278, 468) crosses without a pixel.
+    let gaps = |picture: &Framebuffer| {
+        let is_lit = |x: i32, y: i32| picture.get(x, y).is_some_and(|color| color != Color::BLACK);
+        let column = |y: i32| 240 + (y - 240) * 38 / 228;
+        (300..460).filter(|&y| !is_lit(column(y), y) && !is_lit(column(y) - 1, y)).count()
+    };
+    assert_eq!(gaps(&draw("ch02_dda_lines", "star")), 0);
+    assert!(gaps(&draw("ch02_dda_lines", "broken")) > 120);
+
+    let vertical =
+        |picture: &Framebuffer| count(picture, |x, y, color| x == 240 && y > 260 && color != Color::BLACK);
+    assert_eq!(vertical(&draw("ch02_dda_lines", "star")), 468 - 261);
+    assert_eq!(vertical(&draw("ch02_dda_lines", "broken")), 0, "a vertical line vanishes");
+}
+
+#[test]
+fn nearly_level_edges_shoot_out_of_the_triangle() {
+    let outside = |picture: &Framebuffer| {
+        count(picture, |x, _, color| !(60..=260).contains(&x) && color != Color::BLACK)
+    };
+    assert_eq!(outside(&draw("ch02_triangles", "clamped")), 0);
+    assert!(outside(&draw("ch02_triangles", "overshoot")) > 6 * 50);
+}
+
+#[test]
+fn seams_are_drawn_twice() {
+    let twice = |picture: &Framebuffer| count(picture, |_, _, color| color == Color::rgb(255, 220, 60));
+    assert!(twice(&draw("ch02_triangles", "shared-edge")) > 16 * 16 * 50);
+}
+
+#[test]
+fn values_leave_the_range_of_the_corners() {
+    let orange =
+        |name| count(&draw("ch03_barycentric", name), |_, _, color| color == Color::rgb(255, 140, 0));
+    let [spikes, edges, everywhere] = ["spikes", "limited-edges", "limited"].map(orange);
+    assert_eq!(everywhere, 0);
+    assert!(edges > 0, "the book's remedy leaves the ends of rows");
+    assert!(spikes > 2 * edges, "and mends the tips");
+}
+
+/// How far the border between the lower and the upper colors of the tilted square is from a straight line, in pixels.
+fn bend(picture: &Framebuffer) -> f64 {
+    let is_upper = |color| color == Color::BLUE || color == Color::rgb(255, 123, 172);
+    let border: Vec<(f64, f64)> = (0..90)
+        .map(|x| {
+            let height = picture.rect().rows().find(|&y| picture.get(x, y).is_some_and(is_upper));
+            (f64::from(x), f64::from(height.expect("both colors are in every column")))
+        })
+        .collect();
+    let [(x0, y0), (x1, y1)] = [border[0], border[border.len() - 1]];
+    let off = |&(x, y): &(f64, f64)| (y - (y0 + (y1 - y0) * (x - x0) / (x1 - x0))).abs();
+    border.iter().map(off).fold(0.0, f64::max)
+}
+
+#[test]
+fn affine_interpolation_bends_a_straight_line() {
+    assert!(bend(&draw("ch05_perspective_correct", "correct")) <= 2.5);
+    assert!(bend(&draw("ch05_perspective_correct", "reciprocal")) <= 2.5);
+    assert!(bend(&draw("ch05_perspective_correct", "affine")) > 20.0);
+}
+
+#[test]
+fn affine_interpolation_folds_the_floor() {
+    // Across a row of the floor all squares are equally wide, but for those that the picture cuts off.
+    let unevenness = |picture: &Framebuffer| {
+        let row: Vec<Color> = picture.rect().columns().filter_map(|x| picture.get(x, 190)).collect();
+        let runs: Vec<usize> = row.chunk_by(|a, b| a == b).map(<[Color]>::len).collect();
+        let whole = &runs[1..runs.len() - 1];
+        whole.iter().max().expect("some") - whole.iter().min().expect("some")
+    };
+    assert!(unevenness(&draw("ch05_perspective_correct", "floor")) <= 2);
+    assert!(unevenness(&draw("ch05_perspective_correct", "floor-affine")) > 200);
+}
+
+#[test]
+fn three_ways_to_the_same_picture() {
+    let correct = draw("ch05_perspective_correct", "correct");
+    assert!(correct == draw("ch05_perspective_correct", "reciprocal"), "1/ω and V/ω give the same picture");
+    assert!(correct != draw("ch05_perspective_correct", "affine"));
+}

@@ -1,0 +1,208 @@
+//! The command line that all programs share: what is written, what is said, and with which exit code.
+
+#[path = "support/chapters.rs"]
+mod chapters;
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+use chapters::CHAPTERS;
+
+/// An empty folder of its own for one test.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("command_line").join(name);
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).expect("a folder in target");
+    folder
+}
+
+fn run_in(folder: &Path, arguments: &[&str]) -> Output {
+    let program = env!("CARGO_BIN_EXE_ch05_perspective_correct");
+    Command::new(program).args(arguments).current_dir(folder).output().expect("the program starts")
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).expect("UTF-8")
+}
+
+fn files(folder: &Path) -> Vec<String> {
+    let entries =
+        std::fs::read_dir(folder).map(|entries| entries.filter_map(Result::ok).collect()).unwrap_or(vec![]);
+    let mut names: Vec<String> =
+        entries.iter().map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    names
+}
+
+/// Runs the program in an empty folder and expects a refusal: the exit code, a reason on stderr, and nothing written.
+fn refused(name: &str, arguments: &[&str], code: i32, reason: &str) {
+    let folder = folder(name);
+    let output = run_in(&folder, arguments);
+    let stderr = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {stderr}");
+    assert!(stderr.starts_with("error: ") && stderr.contains(reason), "{arguments:?}: {stderr}");
+    assert!(output.stdout.is_empty(), "{arguments:?}");
+    assert!(files(&folder).is_empty(), "{arguments:?} left {:?}", files(&folder));
+}
+
+#[test]
+fn one_command_one_picture() {
+    let folder = folder("lead");
+    let output = run_in(&folder, &[]);
+    assert!(output.status.success());
+    let path = Path::new("out").join("ch05_perspective_correct").join("correct.png");
+    assert_eq!(text(&output.stdout), format!("{}\n", path.display()));
+    assert!(output.stderr.is_empty());
+    assert_eq!(image::image_dimensions(folder.join(path)).expect("a picture"), (640, 480));
+}
+
+#[test]
+fn all_variants_and_their_list() {
+    for &(chapter, program) in CHAPTERS {
+        let folder = folder(chapter.name);
+        let run = |argument: &str| {
+            let output = Command::new(program)
+                .arg(argument)
+                .args(if argument == "--all" { &["--out", "x"][..] } else { &[] })
+                .current_dir(&folder)
+                .output()
+                .expect("the program starts");
+            assert!(output.status.success());
+            text(&output.stdout)
+        };
+        let mut expected: Vec<String> =
+            chapter.variants.iter().map(|variant| format!("{}.png", variant.name)).collect();
+        assert_eq!(run("--all").lines().count(), expected.len(), "a path per line");
+        expected.sort();
+        assert_eq!(files(&folder.join("x")), expected);
+
+        let list = run("--list");
+        assert_eq!(list.lines().count(), chapter.variants.len(), "a line per variant");
+        for (line, variant) in list.lines().zip(chapter.variants) {
+            assert_eq!(line.split_whitespace().next(), Some(variant.name));
+            assert!(line.contains(variant.look));
+        }
+    }
+}
+
+#[test]
+fn out_names_a_file_or_a_folder() {
+    let folder = folder("out");
+    for (path, written) in [
+        ("a.png", "a.png"),
+        ("new/b.bmp", "new/b.bmp"),
+        ("c.TGA", "c.TGA"),
+        ("d.ppm", "d.ppm"),
+        ("e", "e/affine.png"),
+        ("f.1", "f.1/affine.png"),
+    ] {
+        let output = run_in(&folder, &["affine", "--out", path]);
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        assert!(folder.join(written).is_file(), "{path}");
+        assert_eq!(Path::new(text(&output.stdout).trim_end()), Path::new(written));
+    }
+    // A second run takes the place of the first, and nothing else is left.
+    assert!(run_in(&folder, &["correct", "--out", "a.png"]).status.success());
+    assert_eq!(files(&folder), ["a.png", "c.TGA", "d.ppm", "e", "f.1", "new"]);
+}
+
+#[test]
+fn sizes_cut_a_window_out_of_the_same_coordinates() {
+    let folder = folder("size");
+    for (size, name) in [("640x480", "whole.png"), ("50x40", "part.png"), ("1x1", "dot.png")] {
+        assert!(run_in(&folder, &["correct", "--size", size, "--out", name]).status.success());
+    }
+    let [whole, part] =
+        ["whole.png", "part.png"].map(|name| image::open(folder.join(name)).expect("written").to_rgb8());
+    for (x, row, pixel) in part.enumerate_pixels() {
+        let y = 39 - row;
+        assert_eq!(pixel, whole.get_pixel(x, 479 - y), "({x}, {y})");
+    }
+}
+
+#[test]
+fn zoom_and_compare() {
+    let folder = folder("compare");
+    let output = run_in(&folder, &["affine", "--compare"]);
+    assert!(output.status.success());
+    let stderr = text(&output.stderr);
+    assert!(stderr.ends_with(" of 307200 pixels differ\n") && !stderr.starts_with("0 "), "{stderr}");
+    let path = folder.join("out/ch05_perspective_correct/affine--correct.png");
+    assert_eq!(image::image_dimensions(path).expect("written"), (640 * 3 + 8, 480));
+
+    let output =
+        run_in(&folder, &["reciprocal", "--compare", "correct", "--zoom", "10@5,5", "--out", "b.png"]);
+    assert_eq!(text(&output.stderr), "0 of 307200 pixels differ\n");
+    assert_eq!(image::image_dimensions(folder.join("b.png")).expect("written"), (1280 * 3 + 8, 960));
+}
+
+#[test]
+fn what_makes_no_sense_is_refused() {
+    refused("variant", &["afine"], 2, "no variant 'afine'; it has: correct, affine");
+    refused("option", &["--sise", "4x4"], 2, "--sise");
+    refused("two", &["affine", "correct"], 2, "correct");
+    refused("size", &["--size", "640"], 2, "640x480");
+    refused("zero", &["--size", "0x5"], 2, "1 to 16384");
+    refused("huge", &["--size", "16384x16384"], 2, "more than");
+    refused("zoom", &["--zoom", "8@9"], 2, "8@9");
+    refused("zoom_outside", &["--zoom", "8@640,0"], 2, "outside the picture of 640×480");
+    refused("all_in_one", &["--all", "--out", "x.png"], 2, "folder");
+    refused("all_and_one", &["affine", "--all"], 2, "--all");
+    refused("all_compared", &["--all", "--compare"], 2, "--compare");
+    refused("no_remedy", &["correct", "--compare"], 2, "no remedy");
+    refused("unknown_other", &["affine", "--compare", "right"], 2, "no variant 'right'");
+    refused("too_wide", &["affine", "--compare", "--size", "6000x10"], 2, "too wide");
+    refused("format", &["--out", "x.jpg"], 2, ".png .bmp .tga .ppm");
+    refused("list_and_more", &["affine", "--list"], 2, "--list");
+}
+
+#[test]
+fn what_cannot_be_written_is_an_error_and_leaves_nothing() {
+    let folder = folder("unwritable");
+    std::fs::write(folder.join("file"), "in the way").expect("written");
+    std::fs::create_dir(folder.join("folder.png")).expect("made");
+    for path in ["file/a.png", "file", "folder.png"] {
+        let output = run_in(&folder, &["--out", path]);
+        let stderr = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{path}: {stderr}");
+        assert!(
+            stderr.starts_with("error: cannot ") && stderr.contains(path.split('/').next().expect("a part")),
+            "{stderr}"
+        );
+        assert_eq!(stderr.lines().count(), 1);
+    }
+    assert_eq!(files(&folder), ["file", "folder.png"]);
+    assert_eq!(std::fs::read_to_string(folder.join("file")).expect("still there"), "in the way");
+}
+
+#[test]
+fn help_reads_well() {
+    let output = run_in(&folder("help"), &["--help"]);
+    assert!(output.status.success());
+    let help = text(&output.stdout);
+    for word in [
+        "Why does a texture bend",
+        "cargo run --bin ch05_perspective_correct",
+        "--zoom",
+        "--compare",
+        "floor-affine",
+    ] {
+        assert!(help.contains(word), "{word} is missing in:\n{help}");
+    }
+}
+
+#[test]
+fn a_closed_pipe_ends_it_quietly() {
+    let folder = folder("pipe");
+    let mut child = Command::new(env!("CARGO_BIN_EXE_ch05_perspective_correct"))
+        .args(["--all"])
+        .current_dir(&folder)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    drop(child.stdout.take());
+    let output = child.wait_with_output().expect("it ends");
+    assert_eq!(text(&output.stderr), "");
+    assert!(output.status.success());
+}

@@ -1,0 +1,31 @@
+//! The chapters' own tables, and the programs built from them.
+
+#![allow(dead_code, reason = "each test uses a part of it, and the chapters' `main`s are not called")]
+
+use rasterbook::program::{Chapter, Variant};
+
+/// Lists the chapters: includes each file as a module, and pairs its table with its program.
+macro_rules! chapters {
+    ($($path:literal $name:ident),* $(,)?) => {
+        $(#[path = $path] mod $name;)*
+
+        /// All chapters in the order of the book, each with the path of its program.
+        pub(crate) const CHAPTERS: &[(&Chapter, &str)] =
+            &[$((&$name::CHAPTER, env!(concat!("CARGO_BIN_EXE_", stringify!($name))))),*];
+    };
+}
+chapters!(
+    "../../chapters/ch01_pixels.rs" ch01_pixels,
+    "../../chapters/ch02_dda_lines.rs" ch02_dda_lines,
+    "../../chapters/ch02_triangles.rs" ch02_triangles,
+    "../../chapters/ch03_barycentric.rs" ch03_barycentric,
+    "../../chapters/ch04_projection.rs" ch04_projection,
+    "../../chapters/ch05_perspective_correct.rs" ch05_perspective_correct,
+);
+
+/// A row of a chapter's table.
+pub(crate) fn variant(chapter: &str, name: &str) -> &'static Variant {
+    let (chapter, _) =
+        CHAPTERS.iter().find(|(c, _)| c.name == chapter).unwrap_or_else(|| panic!("no {chapter}"));
+    chapter.find(name).unwrap_or_else(|| panic!("{} has no {name}", chapter.name))
+}
