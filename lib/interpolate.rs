@@ -322,9 +322,9 @@ mod tests {
                 let area = |b: DVec3, c: DVec3| (b - hit).cross(c - hit).dot(normal) / normal.length_squared();
                 let w = [area(space[1], space[2]), area(space[2], space[0]), area(space[0], space[1])];
                 if hit.z > 40.0 && hit.z < 600.0 {
-                    for k in 0..2 {
+                    for (k, &value) in found.values.iter().enumerate() {
                         let expected: f64 = (0..3).map(|i| w[i] * uv[i][k]).sum();
-                        assert!((found.values[k] - expected).abs() < 1e-5, "{} is not {expected} at ({x}, {y})", found.values[k]);
+                        assert!((value - expected).abs() < 1e-5, "{value} is not {expected} at ({x}, {y})");
                     }
                     assert!(is_near(found.w, hit.z, 1e4));
                 }
