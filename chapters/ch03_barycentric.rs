@@ -70,7 +70,7 @@ fn texture(framebuffer: &mut Framebuffer) {
     let corners =
         [corner(0.0, 0.0, [0.0, 0.0]), corner(480.0, 0.0, [1.0, 0.0]), corner(0.0, 480.0, [0.0, 1.0])];
     step_values(corners, Walk::default(), framebuffer.rect(), |x, y, uv| {
-        framebuffer.set(x, y, texture.nearest(uv, AddressMode::Clamp));
+        framebuffer.set(x, y, Color::truncated(texture.nearest(uv, AddressMode::Clamp)));
     });
 }
 // ANCHOR_END: texture

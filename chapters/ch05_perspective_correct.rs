@@ -67,7 +67,7 @@ fn textured(framebuffer: &mut Framebuffer, triangles: &[Triangle], interpolation
     let texture = Texture::book();
     for &triangle in triangles {
         step_parameter(triangle, interpolation, Walk::default(), framebuffer.rect(), |x, y, point| {
-            framebuffer.set(x, y, texture.nearest(point.values, AddressMode::Clamp));
+            framebuffer.set(x, y, Color::truncated(texture.nearest(point.values, AddressMode::Clamp)));
         });
     }
 }
@@ -96,7 +96,7 @@ fn textured_as_before(framebuffer: &mut Framebuffer, triangles: &[Triangle]) {
         let corners =
             triangle.map(|corner| Corner { position: corner.position, attributes: corner.attributes.values });
         step_values(corners, Walk::default(), framebuffer.rect(), |x, y, uv| {
-            framebuffer.set(x, y, texture.nearest(uv, AddressMode::Clamp));
+            framebuffer.set(x, y, Color::truncated(texture.nearest(uv, AddressMode::Clamp)));
         });
     }
 }
@@ -130,7 +130,7 @@ fn checkered_floor(framebuffer: &mut Framebuffer, interpolation: Interpolation) 
     let texture = Texture::checkerboard(Color::rgb(50, 60, 80), Color::rgb(235, 235, 225));
     for triangle in [[near[0], near[1], far[0]], [near[1], far[1], far[0]]] {
         step_parameter(triangle, interpolation, Walk::default(), framebuffer.rect(), |x, y, point| {
-            framebuffer.set(x, y, texture.nearest(point.values, AddressMode::Repeat));
+            framebuffer.set(x, y, Color::truncated(texture.nearest(point.values, AddressMode::Repeat)));
         });
     }
 }

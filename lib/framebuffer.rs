@@ -100,6 +100,18 @@ impl Rect {
         self.left <= x && x < self.right && self.bottom <= y && y < self.top
     }
 
+    /// Where the pixel (x, y) stands in a plane that holds the rectangle's rows one after the other, the lowest first;
+    /// `None` outside.
+    #[must_use]
+    pub const fn index(self, x: i32, y: i32) -> Option<usize> {
+        if self.contains(x, y) {
+            let width = (self.right - self.left) as usize;
+            Some((y - self.bottom) as usize * width + (x - self.left) as usize)
+        } else {
+            None
+        }
+    }
+
     /// The columns, from left to right.
     #[must_use]
     pub const fn columns(self) -> Range<i32> {
@@ -169,14 +181,9 @@ impl Framebuffer {
     }
 
     // ANCHOR: addressing
-    /// Where the pixel (x, y) stands in memory; `None` outside.
-    fn index(&self, x: i32, y: i32) -> Option<usize> {
-        self.rect().contains(x, y).then(|| y as usize * self.width as usize + x as usize)
-    }
-
     /// Gives the pixel (x, y) a color. Outside the framebuffer nothing happens.
     pub fn set(&mut self, x: i32, y: i32, color: Color) {
-        if let Some(index) = self.index(x, y) {
+        if let Some(index) = self.rect().index(x, y) {
             self.pixels[index] = color;
         }
     }
@@ -185,7 +192,7 @@ impl Framebuffer {
     /// The color of the pixel (x, y); `None` outside.
     #[must_use]
     pub fn get(&self, x: i32, y: i32) -> Option<Color> {
-        self.index(x, y).map(|index| self.pixels[index])
+        self.rect().index(x, y).map(|index| self.pixels[index])
     }
 
     /// Gives all pixels the same color.

@@ -18,7 +18,7 @@ use glam::DVec2;
 use crate::Rect;
 use crate::area::twice_signed_area;
 use crate::real::Real;
-use crate::scanline::{Corner, Walk, split};
+use crate::scanline::{Corner, Edge, Payload, Walk, split};
 
 // ANCHOR: barycentric_weights
 /// How much each corner of a triangle weighs at the point p: the area of the small triangle opposite to the corner, as
@@ -162,19 +162,71 @@ pub fn step_parameter<const N: usize>(
     window: Rect,
     mut emit: impl FnMut(i32, i32, Projected<f64, N>),
 ) {
+    let corners = corners.map(|corner| corner.with((corner.attributes, ())));
+    step_parameter_and(corners, interpolation, walk, window, |x, y, point, ()| emit(x, y, point));
+}
+
+/// The same with a depth that changes evenly on the screen, beside t′ (chapter 7).
+///
+/// Screen space → (x, y, ω and values, depth). Source: book, section 7.2.
+pub fn step_parameter_and_depth<const N: usize>(
+    corners: [Corner<(Projected<f64, N>, f64)>; 3],
+    interpolation: Interpolation,
+    walk: Walk,
+    window: Rect,
+    emit: impl FnMut(i32, i32, Projected<f64, N>, f64),
+) {
+    step_parameter_and(corners, interpolation, walk, window, emit);
+}
+
+/// What is stepped along edges and rows: t′, and something that changes evenly on the screen.
+///
+/// Only t′ is limited at an edge's end, as in the book.
+#[derive(Clone, Copy)]
+struct Along<E> {
+    t: f64,
+    evenly: E,
+}
+
+impl<E: Payload> Payload for Along<E> {
+    fn slope(start: Self, end: Self, length: f64) -> Self {
+        Self { t: f64::slope(start.t, end.t, length), evenly: E::slope(start.evenly, end.evenly, length) }
+    }
+
+    fn stepped(self, slope: Self, count: f64) -> Self {
+        Self { t: self.t.stepped(slope.t, count), evenly: self.evenly.stepped(slope.evenly, count) }
+    }
+
+    fn limited(self, start: Self, end: Self) -> Self {
+        Self { t: self.t.limited(start.t, end.t), ..self }
+    }
+}
+
+fn step_parameter_and<E: Payload, const N: usize>(
+    corners: [Corner<(Projected<f64, N>, E)>; 3],
+    interpolation: Interpolation,
+    walk: Walk,
+    window: Rect,
+    mut emit: impl FnMut(i32, i32, Projected<f64, N>, E),
+) {
     let between = |a, b, t| interpolation.between(a, b, t);
-    for half in split(corners, between).into_iter().flatten() {
-        half.walk(
-            |_| [0.0, 1.0],
-            walk,
-            window,
-            |span| {
-                let [t_left, t_right] = span.payload;
-                let start = between(half.left.start.attributes, half.left.end.attributes, t_left);
-                let end = between(half.right.start.attributes, half.right.end.attributes, t_right);
-                span.step(0.0, 1.0, |x, t| emit(x, span.y, between(start, end, t)));
-            },
-        );
+    let evenly_between = |a: E, b, t| a.stepped(E::slope(a, b, 1.0), t);
+    let cut = |a: (_, E), b: (_, E), t| (between(a.0, b.0, t), evenly_between(a.1, b.1, t));
+    for half in split(corners, cut).into_iter().flatten() {
+        // t′ goes from 0 at an edge's start to 1 at its end.
+        let payload = |edge: &Edge<(_, E)>| {
+            [
+                Along { t: 0.0, evenly: edge.start.attributes.1 },
+                Along { t: 1.0, evenly: edge.end.attributes.1 },
+            ]
+        };
+        half.walk(payload, walk, window, |span| {
+            let [left, right] = span.payload;
+            let start = between(half.left.start.attributes.0, half.left.end.attributes.0, left.t);
+            let end = between(half.right.start.attributes.0, half.right.end.attributes.0, right.t);
+            let row = [Along { t: 0.0, ..left }, Along { t: 1.0, ..right }];
+            span.step(row[0], row[1], |x, along| emit(x, span.y, between(start, end, along.t), along.evenly));
+        });
     }
 }
 // ANCHOR_END: step_parameter

@@ -41,6 +41,8 @@ pub mod real;
 pub mod interpolate;
 pub mod texture;
 pub mod transform;
+pub mod depth;
+pub mod clip;
 
 #[cfg(feature = "program")]
 pub mod program;

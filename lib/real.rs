@@ -1,6 +1,8 @@
-//! Chapter 3: the numbers that interpolation is written for.
+//! Chapter 3: the numbers that interpolation and shading are written for.
 //!
-//! A formula that is generic over [`Real`] is written once and runs on `f64`, as the book computes, and on `f32`.
+//! A formula that is generic over [`Real`] is written once and runs on `f64`, as the book computes, on `f32`, and on
+//! several numbers at a time. That is why comparisons do not give a `bool` but a [`Real::Mask`]: of several numbers
+//! some may be less and others not.
 //!
 //! ```
 //! use rasterbook::real::Real;
@@ -25,18 +27,115 @@ pub trait Real:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
+    /// Yes or no for each of the numbers.
+    type Mask: Mask;
+
     /// A literal: the number nearest to `value`.
     fn of(value: f64) -> Self;
+    /// The lesser of two numbers.
+    #[must_use]
+    fn min(self, other: Self) -> Self;
+    /// The greater of two numbers.
+    #[must_use]
+    fn max(self, other: Self) -> Self;
+    /// The greatest whole number that is not greater.
+    #[must_use]
+    fn floor(self) -> Self;
+    /// The square root, rounded once.
+    #[must_use]
+    fn sqrt(self) -> Self;
+    /// Where this number is less than the other one.
+    #[must_use]
+    fn is_less(self, other: Self) -> Self::Mask;
+    /// `yes` where the mask says so, `no` elsewhere.
+    #[must_use]
+    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+    /// A function of one number, for each of them: what has no formula in the four operations, such as a power.
+    #[must_use]
+    fn map(self, function: impl Fn(f64) -> f64) -> Self;
+    /// Looks up a record of C numbers by two whole numbers that are not negative, such as a texel by column and row.
+    #[must_use]
+    fn look_up<const C: usize>(
+        column: Self,
+        row: Self,
+        table: impl Fn(usize, usize) -> [f64; C],
+    ) -> [Self; C];
 }
 
-impl Real for f64 {
-    fn of(value: f64) -> Self {
-        value
+/// Yes or no, for one number or for several.
+pub trait Mask: Copy + Debug {
+    /// The same answer for all.
+    fn all(answer: bool) -> Self;
+    /// Yes where both say yes.
+    #[must_use]
+    fn and(self, other: Self) -> Self;
+    /// Yes where this one says no.
+    #[must_use]
+    fn not(self) -> Self;
+}
+
+impl Mask for bool {
+    fn all(answer: bool) -> Self {
+        answer
+    }
+
+    fn and(self, other: Self) -> Self {
+        self && other
+    }
+
+    fn not(self) -> Self {
+        !self
     }
 }
 
-impl Real for f32 {
-    fn of(value: f64) -> Self {
-        value as Self
-    }
+/// The same lines for both sizes of a plain number.
+macro_rules! plain_number {
+    ($number:ident) => {
+        impl Real for $number {
+            type Mask = bool;
+
+            fn of(value: f64) -> Self {
+                value as Self
+            }
+
+            fn min(self, other: Self) -> Self {
+                Self::min(self, other)
+            }
+
+            fn max(self, other: Self) -> Self {
+                Self::max(self, other)
+            }
+
+            fn floor(self) -> Self {
+                Self::floor(self)
+            }
+
+            fn sqrt(self) -> Self {
+                Self::sqrt(self)
+            }
+
+            fn is_less(self, other: Self) -> bool {
+                self < other
+            }
+
+            fn select(mask: bool, yes: Self, no: Self) -> Self {
+                if mask { yes } else { no }
+            }
+
+            fn map(self, function: impl Fn(f64) -> f64) -> Self {
+                function(f64::from(self)) as Self
+            }
+
+            fn look_up<const C: usize>(
+                column: Self,
+                row: Self,
+                table: impl Fn(usize, usize) -> [f64; C],
+            ) -> [Self; C] {
+                table(column as usize, row as usize).map(Self::of)
+            }
+        }
+    };
 }
+
+plain_number!(f64);
+plain_number!(f32);

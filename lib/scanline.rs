@@ -132,6 +132,13 @@ pub struct Corner<A> {
     pub attributes: A,
 }
 
+impl<A> Corner<A> {
+    /// The same corner with other attributes.
+    pub fn with<B>(&self, attributes: B) -> Corner<B> {
+        Corner { position: self.position, attributes }
+    }
+}
+
 /// An edge, from its lower end to its upper end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Edge<A> {

@@ -8,12 +8,13 @@
 //! use rasterbook::texture::{AddressMode, Texture};
 //!
 //! let texture = Texture::new(2, 1, vec![Color::RED, Color::GREEN]);
-//! assert_eq!(texture.nearest([0.75, 0.5], AddressMode::Clamp), Color::GREEN);
-//! assert_eq!(texture.nearest([1.25, 0.5], AddressMode::Clamp), Color::GREEN);
-//! assert_eq!(texture.nearest([1.25, 0.5], AddressMode::Repeat), Color::RED);
+//! assert_eq!(texture.nearest([0.75, 0.5], AddressMode::Clamp), Color::GREEN.to_f64());
+//! assert_eq!(texture.nearest([1.25, 0.5], AddressMode::Clamp), Color::GREEN.to_f64());
+//! assert_eq!(texture.nearest([1.25, 0.5], AddressMode::Repeat), Color::RED.to_f64());
 //! ```
 
 use crate::Color;
+use crate::real::Real;
 
 /// Which texel is meant by coordinates outside 0..=1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -26,15 +27,16 @@ pub enum AddressMode {
 }
 
 impl AddressMode {
-    /// The texel index in 0..count that `index` stands for.
-    fn apply(self, index: f64, count: u32) -> usize {
-        let last = f64::from(count - 1);
+    /// The texel index in 0..count that the whole number `index` stands for.
+    ///
+    /// Whatever comes in, NaN too, what goes out is inside.
+    fn apply<R: Real>(self, index: R, count: u32) -> R {
+        let count = R::of(f64::from(count));
         let inside = match self {
             Self::Clamp => index,
-            Self::Repeat => index - (index / f64::from(count)).floor() * f64::from(count),
+            Self::Repeat => index - (index / count).floor() * count,
         };
-        // `clamp` lets NaN through and the conversion makes it 0: no coordinate reads past the picture.
-        inside.clamp(0.0, last) as usize
+        inside.max(R::of(0.0)).min(count - R::of(1.0))
     }
 }
 
@@ -93,14 +95,14 @@ impl Texture {
     }
 
     // ANCHOR: nearest
-    /// The texel that (u, v) falls into: column ⌊u · width⌋, row ⌊v · height⌋. Book, section 3.3.
+    /// The texel that (u, v) falls into: column ⌊u · width⌋, row ⌊v · height⌋, as channels in 0..=255. Book, section 3.3.
     ///
     /// The book's early programs read past the array at u = 1; the address mode decides here.
     #[must_use]
-    pub fn nearest(&self, [u, v]: [f64; 2], mode: AddressMode) -> Color {
-        let column = mode.apply((u * f64::from(self.width)).floor(), self.width);
-        let row = mode.apply((v * f64::from(self.height)).floor(), self.height);
-        self.texels[row * self.width as usize + column]
+    pub fn nearest<R: Real>(&self, [u, v]: [R; 2], mode: AddressMode) -> [R; 3] {
+        let column = mode.apply((u * R::of(f64::from(self.width))).floor(), self.width);
+        let row = mode.apply((v * R::of(f64::from(self.height))).floor(), self.height);
+        R::look_up(column, row, |column, row| self.texels[row * self.width as usize + column].to_f64())
     }
     // ANCHOR_END: nearest
 }
@@ -112,7 +114,7 @@ mod tests {
     #[test]
     fn the_four_texels_of_the_book() {
         let texture = Texture::book();
-        let at = |u, v| texture.nearest([u, v], AddressMode::Clamp);
+        let at = |u: f64, v| Color::truncated(texture.nearest([u, v], AddressMode::Clamp));
         assert_eq!(at(0.25, 0.25), Color::RED);
         assert_eq!(at(0.75, 0.25), Color::GREEN);
         assert_eq!(at(0.25, 0.75), Color::BLUE);
@@ -124,7 +126,7 @@ mod tests {
     #[test]
     fn outside_coordinates() {
         let texture = Texture::new(3, 1, vec![Color::RED, Color::GREEN, Color::BLUE]);
-        let at = |u, mode| texture.nearest([u, 0.0], mode);
+        let at = |u: f64, mode| Color::truncated(texture.nearest([u, 0.0], mode));
         assert_eq!(at(-0.1, AddressMode::Clamp), Color::RED);
         assert_eq!(at(-0.1, AddressMode::Repeat), Color::BLUE);
         assert_eq!(at(7.5, AddressMode::Clamp), Color::BLUE);

@@ -1,0 +1,247 @@
+//! # Chapter 6: the z-buffer
+//!
+//! **Which surface is in front?** The painter draws what is far first. That fails as soon as two surfaces pass through
+//! one another. The z-buffer asks the question anew at every pixel.
+//!
+//! New here: a depth for each pixel, and the depth test (`lib/depth.rs`). The depth is interpolated like any other
+//! value, by chapter 5's formula. Book: chapter 6.
+
+use std::process::ExitCode;
+
+use glam::{DVec2, dvec2, dvec3};
+use rasterbook::depth::{DepthTest, Target, z_from_w};
+use rasterbook::interpolate::{Interpolation, Projected, step_parameter};
+use rasterbook::program::{Chapter, Variant};
+use rasterbook::scanline::{Corner, Walk};
+use rasterbook::texture::{AddressMode, Texture};
+use rasterbook::transform::{perspective, perspective_divide};
+use rasterbook::{Color, Framebuffer};
+
+pub(crate) const CHAPTER: Chapter = Chapter {
+    name: "ch06_z_buffer",
+    question: "Which surface is in front?",
+    variants: &[
+        Variant::new("z-buffer", z_buffer, "the tilted square before a square that faces us: drawn first, and still in front where it is nearer")
+            .source("section 6.2, Figure 6-5"),
+        Variant::new("painter", painter, "three squares drawn from far to near, without a depth test: each covers what is behind it")
+            .source("section 6.1, Figure 6-2"),
+        Variant::new("painter-red-first", painter_red_first, "two triangles that pierce each other, red drawn first: green covers red also where red is nearer")
+            .source("section 6.1, Figure 6-3").mended_by("intersecting"),
+        Variant::new("painter-green-first", painter_green_first, "the same, green drawn first: no order is right")
+            .source("section 6.1, Figure 6-3").mended_by("intersecting"),
+        Variant::new("intersecting", intersecting, "the same with a z-buffer: each triangle is seen where it is nearer, and they meet in a line")
+            .source("section 6.2, Figure 6-3"),
+        Variant::new("depth", depth, "a z-buffer, as hardware stores it, in 16 grays: black is near (1), white is far (12); most of them lie close by"),
+        Variant::new("w-buffer", w_buffer, "the same scene with ω stored, in 16 grays: black is near (1), white is far (12); each stands for the same distance"),
+        Variant::new("uncleared", uncleared, "the second frame of a moving square, depths of the first not cleared: the old square cuts a hole into the new one")
+            .source("section 6.2, section 9.4.1").mended_by("cleared"),
+        Variant::new("cleared", cleared, "the same frame with the depths cleared before it: the square is whole").source("section 6.2"),
+    ],
+};
+
+/// The depth that the buffer is cleared to: farther away than anything drawn.
+const FAR_AWAY: f64 = 1000.0;
+
+type Triangle<const N: usize> = [Corner<Projected<f64, N>>; 3];
+
+// ANCHOR: vertex
+/// Projects a point of the book's scene with its texture coordinates; its depth z is the third value.
+fn vertex([x, y, z]: [f64; 3], [u, v]: [f64; 2]) -> Corner<Projected<f64, 3>> {
+    const NEAR: f64 = 80.0;
+    let mut clip = perspective(dvec3(x, y, z), NEAR);
+    // So that the divide leaves the depth: z · z / ω = z.
+    clip.z = z * z;
+    let screen = perspective_divide(clip);
+    Corner { position: screen.truncate(), attributes: Projected { w: clip.w, values: [u, v, screen.z] } }
+}
+// ANCHOR_END: vertex
+
+// ANCHOR: z_buffer
+/// Draws a textured triangle where it is not behind what has been drawn.
+fn draw_textured(target: &mut Target, triangle: Triangle<3>, texture: &Texture) {
+    let Target { color, depth } = target;
+    step_parameter(
+        triangle,
+        Interpolation::PerspectiveCorrect,
+        Walk::default(),
+        color.rect(),
+        |x, y, point| {
+            let [u, v, z] = point.values;
+            if depth.test_and_set(x, y, z, DepthTest::LessOrEqual) {
+                color.set(x, y, Color::truncated(texture.nearest([u, v], AddressMode::Clamp)));
+            }
+        },
+    );
+}
+
+/// The tilted square of chapter 5, then a square behind it.
+fn z_buffer(framebuffer: &mut Framebuffer) {
+    const TILTED: [f64; 2] = [415.692193816530, 340.0];
+    let quad = |[x, z]: [f64; 2], left_z: f64, uv: [[f64; 2]; 4]| {
+        let [a, b] = [vertex([0.0, 0.0, left_z], uv[0]), vertex([x, 0.0, z], uv[1])];
+        let [c, d] = [vertex([0.0, 480.0, left_z], uv[2]), vertex([x, 480.0, z], uv[3])];
+        [[a, b, c], [b, c, d]]
+    };
+    let tilted = quad(TILTED, 100.0, [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]);
+    let facing = quad([480.0, 150.0], 150.0, [[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0]]);
+
+    let mut target = Target::new(framebuffer.width(), framebuffer.height());
+    target.clear(Color::BLACK, FAR_AWAY);
+    for triangle in tilted.into_iter().chain(facing) {
+        draw_textured(&mut target, triangle, &Texture::book());
+    }
+    *framebuffer = target.color;
+}
+// ANCHOR_END: z_buffer
+
+/// Projects a point of space (z into the screen) onto a picture of 640×480 whose middle the camera looks at.
+fn seen_from_middle(x: f64, y: f64, z: f64) -> Corner<Projected<f64, 1>> {
+    let clip = perspective(dvec3(x, y, z), 500.0);
+    let position: DVec2 = dvec2(320.0, 240.0) + perspective_divide(clip).truncate();
+    Corner { position, attributes: Projected { w: clip.w, values: [z] } }
+}
+
+/// Draws a triangle in one color; `test` says against what.
+fn draw_flat(target: &mut Target, triangle: Triangle<1>, test: DepthTest, flat: Color) {
+    let Target { color, depth } = target;
+    step_parameter(
+        triangle,
+        Interpolation::PerspectiveCorrect,
+        Walk::default(),
+        color.rect(),
+        |x, y, point| {
+            if depth.test_and_set(x, y, point.values[0], test) {
+                color.set(x, y, flat);
+            }
+        },
+    );
+}
+
+/// Draws an upright square, its lower left corner given, as two triangles.
+fn draw_square(target: &mut Target, [x, y, z]: [f64; 3], side: f64, test: DepthTest, flat: Color) {
+    let corner = |i: f64, j: f64| seen_from_middle(x + i * side, y + j * side, z);
+    draw_flat(target, [corner(0.0, 0.0), corner(1.0, 0.0), corner(0.0, 1.0)], test, flat);
+    draw_flat(target, [corner(1.0, 0.0), corner(1.0, 1.0), corner(0.0, 1.0)], test, flat);
+}
+
+const RED: Color = Color::rgb(225, 70, 60);
+const GREEN: Color = Color::rgb(80, 180, 90);
+const BLUE: Color = Color::rgb(70, 120, 220);
+
+// ANCHOR: painter
+/// Three squares, the farthest first: each covers what is behind it.
+fn painter(framebuffer: &mut Framebuffer) {
+    let mut target = Target::new(framebuffer.width(), framebuffer.height());
+    for (place, color) in
+        [([-60.0, -20.0, 800.0], RED), ([-130.0, -110.0, 600.0], GREEN), ([-20.0, -140.0, 450.0], BLUE)]
+    {
+        draw_square(&mut target, place, 210.0, DepthTest::Always, color);
+    }
+    *framebuffer = target.color;
+}
+// ANCHOR_END: painter
+
+// ANCHOR: intersecting
+/// Two triangles that pierce each other: the red one is near at its tip on the right, the green one on the left.
+fn piercing(framebuffer: &mut Framebuffer, red_first: bool, test: DepthTest) {
+    let red = [
+        seen_from_middle(-330.0, -150.0, 700.0),
+        seen_from_middle(-330.0, 210.0, 700.0),
+        seen_from_middle(190.0, 20.0, 420.0),
+    ];
+    let green = [
+        seen_from_middle(330.0, -210.0, 700.0),
+        seen_from_middle(330.0, 150.0, 700.0),
+        seen_from_middle(-190.0, -20.0, 420.0),
+    ];
+    let mut order = [(red, RED), (green, GREEN)];
+    if !red_first {
+        order.reverse();
+    }
+
+    let mut target = Target::new(framebuffer.width(), framebuffer.height());
+    target.clear(Color::BLACK, FAR_AWAY);
+    for (triangle, color) in order {
+        draw_flat(&mut target, triangle, test, color);
+    }
+    *framebuffer = target.color;
+}
+
+/// The painter's order, red first.
+fn painter_red_first(framebuffer: &mut Framebuffer) {
+    piercing(framebuffer, true, DepthTest::Always);
+}
+
+/// The painter's order, green first.
+fn painter_green_first(framebuffer: &mut Framebuffer) {
+    piercing(framebuffer, false, DepthTest::Always);
+}
+
+/// Any order, with a z-buffer.
+fn intersecting(framebuffer: &mut Framebuffer) {
+    piercing(framebuffer, true, DepthTest::LessOrEqual);
+}
+// ANCHOR_END: intersecting
+
+// ANCHOR: depth
+/// A floor with posts, from the distance 1 to 12; each pixel's gray is what `encode` makes of its distance, 0..=1.
+fn encoded_depths(framebuffer: &mut Framebuffer, encode: impl Fn(f64) -> f64) {
+    let mut target = Target::new(framebuffer.width(), framebuffer.height());
+    target.clear(Color::BLACK, FAR_AWAY);
+    let floor = |x: f64, z: f64| seen_from_middle(x, -0.5, z);
+    let [a, b, c, d] = [floor(-12.0, 1.0), floor(12.0, 1.0), floor(12.0, 12.0), floor(-12.0, 12.0)];
+    draw_flat(&mut target, [a, b, c], DepthTest::LessOrEqual, Color::BLACK);
+    draw_flat(&mut target, [a, c, d], DepthTest::LessOrEqual, Color::BLACK);
+    for (x, z) in [(-0.85, 1.5), (-0.72, 2.2), (-0.3, 3.4), (0.6, 4.5), (2.1, 6.5), (4.6, 9.5)] {
+        draw_square(&mut target, [x, -0.5, z], 0.6, DepthTest::LessOrEqual, Color::BLACK);
+    }
+
+    for y in framebuffer.rect().rows() {
+        for x in framebuffer.rect().columns() {
+            let distance = target.depth.get(x, y).unwrap_or(FAR_AWAY).min(12.0);
+            let step = (encode(distance) * 16.0).floor().clamp(0.0, 15.0);
+            framebuffer.set(x, y, Color::gray((step * 17.0) as u8));
+        }
+    }
+}
+
+/// As hardware stores it: Q (ω − n) / ω.
+fn depth(framebuffer: &mut Framebuffer) {
+    encoded_depths(framebuffer, |w| z_from_w(w, 1.0, 12.0));
+}
+
+/// ω itself, scaled to 0..=1.
+fn w_buffer(framebuffer: &mut Framebuffer) {
+    encoded_depths(framebuffer, |w| (w - 1.0) / 11.0);
+}
+// ANCHOR_END: depth
+
+// ANCHOR: uncleared
+/// Two frames of a square that moves to the right and away from us.
+fn two_frames(framebuffer: &mut Framebuffer, clear_depth: bool) {
+    let mut target = Target::new(framebuffer.width(), framebuffer.height());
+    target.clear(Color::BLACK, FAR_AWAY);
+    for (place, color) in [([-170.0, -110.0, 450.0], RED), ([-90.0, -60.0, 500.0], GREEN)] {
+        target.color.clear(Color::BLACK);
+        if clear_depth {
+            target.depth.clear(FAR_AWAY);
+        }
+        draw_square(&mut target, place, 200.0, DepthTest::LessOrEqual, color);
+    }
+    *framebuffer = target.color;
+}
+
+/// The depths of the first frame stay.
+fn uncleared(framebuffer: &mut Framebuffer) {
+    two_frames(framebuffer, false);
+}
+
+/// Each frame begins with cleared depths.
+fn cleared(framebuffer: &mut Framebuffer) {
+    two_frames(framebuffer, true);
+}
+// ANCHOR_END: uncleared
+
+fn main() -> ExitCode {
+    CHAPTER.main()
+}

@@ -1,0 +1,192 @@
+//! # Chapter 7: clipping
+//!
+//! **What if a triangle reaches behind the eye?** There the division turns everything round. What is not in front must
+//! be cut away before the divide, and for that edges must be straight before the divide, depth included.
+//!
+//! New here: the depth a + b/z, which changes evenly on the screen (`lib/depth.rs`, `lib/interpolate.rs`), and clipping
+//! (`lib/clip.rs`). Book: chapter 7.
+
+use std::process::ExitCode;
+
+use arrayvec::ArrayVec;
+use glam::{DVec4, dvec2, dvec3, dvec4};
+use rasterbook::clip::{
+    ClipTest, ClipVertex, ClipVolume, NdcVertex, Plane, clip_polygon, clip_triangle, fan,
+};
+use rasterbook::depth::{DepthTest, Target};
+use rasterbook::interpolate::{Interpolation, Projected, step_parameter_and_depth};
+use rasterbook::line::{StepAxis, dda};
+use rasterbook::program::{Chapter, Variant};
+use rasterbook::scanline::{Corner, Walk};
+use rasterbook::texture::{AddressMode, Texture};
+use rasterbook::transform::perspective;
+use rasterbook::{Color, Framebuffer, Rect};
+
+pub(crate) const CHAPTER: Chapter = Chapter {
+    name: "ch07_clipping",
+    question: "What if a triangle reaches behind the eye?",
+    variants: &[
+        Variant::new("near", near, "two crossing walls, cut off at ω = 15: compare with 'reciprocal', their near ends are gone")
+            .source("section 7.4, Figure 7-10"),
+        Variant::new("reciprocal", reciprocal, "two crossing walls with the depth −1/z: they meet in a straight, upright line")
+            .source("section 7.2"),
+        Variant::new("behind", behind, "a floor that begins behind the eye, not clipped: what is behind us turns up in the sky, upside down")
+            .source("section 7.3, Figure 7-5").mended_by("in-front"),
+        Variant::new("in-front", in_front, "the same floor, clipped at the near plane: it ends at the horizon, and below the picture's lower edge")
+            .source("section 7.3, Figure 7-5"),
+        Variant::new("polygon", polygon, "left: a polygon and a line that cuts it; right: what is left. Green: where the outline enters, red: where it leaves")
+            .source("section 7.4, Figure 7-6"),
+    ],
+};
+
+// ANCHOR: draw
+/// Draws a triangle from clip space: clip, divide, fill with depth test.
+fn draw(
+    target: &mut Target,
+    triangle: [ClipVertex<2>; 3],
+    volume: ClipVolume,
+    to_screen: impl Fn(NdcVertex<2>) -> glam::DVec2,
+    texel: impl Fn([f64; 2]) -> Color,
+) {
+    let planes = volume.planes(Default::default());
+    let Target { color, depth } = target;
+    for piece in fan(&clip_triangle(triangle, &planes, ClipTest::BeforeDivide)) {
+        let corners = piece.map(|vertex| {
+            let divided = NdcVertex::from(vertex);
+            let projected = Projected { w: divided.w, values: divided.varyings };
+            // a + b/z changes evenly on the screen: it is stepped beside t′, and needs no correction.
+            Corner { position: to_screen(divided), attributes: (projected, divided.position.z) }
+        });
+        let window = color.rect();
+        step_parameter_and_depth(
+            corners,
+            Interpolation::PerspectiveCorrect,
+            Walk::default(),
+            window,
+            |x, y, point, z| {
+                if depth.test_and_set(x, y, z, DepthTest::LessOrEqual) {
+                    color.set(x, y, texel(point.values));
+                }
+            },
+        );
+    }
+}
+// ANCHOR_END: draw
+
+// ANCHOR: vertex
+/// Projects a point. The third component is b = −1, a = 0: after the divide the depth is −1/z.
+fn vertex([x, y, z]: [f64; 3], near: f64, uv: [f64; 2]) -> ClipVertex<2> {
+    let clip = perspective(dvec3(x, y, z), near);
+    ClipVertex { position: DVec4 { z: -1.0, ..clip }, varyings: uv }
+}
+// ANCHOR_END: vertex
+
+// ANCHOR: walls
+/// The book's scene: a wall that runs away from us, and one at the distance 55 that faces us.
+fn walls(framebuffer: &mut Framebuffer, volume: ClipVolume) {
+    let corner = |x: f64, y: f64, z: f64| vertex([x, y, z], 9.0, [x / 1280.0, y / 480.0]);
+    let mut target = Target::new(framebuffer.width(), framebuffer.height());
+    target.clear(Color::BLACK, 1000.0);
+    let texture = Texture::book();
+    for triangle in [
+        [corner(0.0, 0.0, 10.0), corner(0.0, 480.0, 10.0), corner(1280.0, 0.0, 100.0)],
+        [corner(1280.0, 0.0, 100.0), corner(0.0, 480.0, 10.0), corner(1280.0, 480.0, 100.0)],
+        [corner(0.0, 0.0, 55.0), corner(0.0, 480.0, 55.0), corner(1280.0, 0.0, 55.0)],
+        [corner(1280.0, 480.0, 55.0), corner(0.0, 480.0, 55.0), corner(1280.0, 0.0, 55.0)],
+    ] {
+        let texel = |uv| Color::truncated(texture.nearest(uv, AddressMode::Clamp));
+        draw(&mut target, triangle, volume, |divided| divided.position.truncate(), texel);
+    }
+    *framebuffer = target.color;
+}
+
+/// Nothing needs to be cut away: everything is in front.
+fn reciprocal(framebuffer: &mut Framebuffer) {
+    walls(framebuffer, ClipVolume::Everything);
+}
+
+/// Cut off at ω = 15.
+fn near(framebuffer: &mut Framebuffer) {
+    walls(framebuffer, ClipVolume::InFront(15.0));
+}
+// ANCHOR_END: walls
+
+// ANCHOR: behind
+/// A checkered floor from 6 behind the eye to 60 before it.
+fn floor(framebuffer: &mut Framebuffer, volume: ClipVolume) {
+    let corner = |x: f64, z: f64| vertex([x, -1.0, z], 300.0, [x / 2.0, z / 2.0]);
+    let [a, b] = [corner(-4.0, -6.0), corner(4.0, -6.0)];
+    let [c, d] = [corner(4.0, 60.0), corner(-4.0, 60.0)];
+    let texture = Texture::checkerboard(Color::rgb(60, 80, 110), Color::rgb(230, 225, 200));
+    let texel = |uv| Color::truncated(texture.nearest(uv, AddressMode::Repeat));
+
+    let mut target = Target::new(framebuffer.width(), framebuffer.height());
+    target.clear(Color::rgb(20, 24, 32), 1000.0);
+    for triangle in [[a, b, c], [a, c, d]] {
+        let to_screen = |divided: NdcVertex<2>| dvec2(320.0, 240.0) + divided.position.truncate();
+        draw(&mut target, triangle, volume, to_screen, texel);
+    }
+    *framebuffer = target.color;
+}
+
+/// Not clipped: the divide mirrors what is behind the eye.
+fn behind(framebuffer: &mut Framebuffer) {
+    floor(framebuffer, ClipVolume::Everything);
+}
+
+/// Clipped a little before the eye.
+fn in_front(framebuffer: &mut Framebuffer) {
+    floor(framebuffer, ClipVolume::InFront(0.5));
+}
+// ANCHOR_END: behind
+
+// ANCHOR: polygon
+/// A polygon that a line crosses four times, and the part of it on one side.
+fn polygon(framebuffer: &mut Framebuffer) {
+    let corners = [
+        (40.0, 90.0),
+        (270.0, 60.0),
+        (250.0, 210.0),
+        (140.0, 240.0),
+        (280.0, 300.0),
+        (220.0, 420.0),
+        (70.0, 380.0),
+    ];
+    let outline = corners.map(|(x, y)| ClipVertex { position: dvec4(x, y, 0.0, 1.0), varyings: [] });
+    // Kept is what lies left of the line x = 190 + y / 20; a plane before the divide, with ω = 1, is a line.
+    let plane = Plane::through_eye(dvec4(-1.0, 0.05, 0.0, 190.0));
+    let kept: ArrayVec<ClipVertex<0>, 16> = clip_polygon(&outline, &plane, ClipTest::BeforeDivide);
+
+    let line = |framebuffer: &mut Framebuffer, a: DVec4, b: DVec4, color| {
+        let [a, b] = [a, b].map(|p| dvec2(p.x, p.y));
+        dda(a, b, StepAxis::Longer, framebuffer.rect(), |x, y| framebuffer.set(x, y, color));
+    };
+    let right = dvec4(330.0, 0.0, 0.0, 0.0);
+    for shift in [DVec4::ZERO, right] {
+        let [low, high] = [dvec4(190.0, 0.0, 0.0, 1.0), dvec4(214.0, 480.0, 0.0, 1.0)];
+        line(framebuffer, low + shift, high + shift, Color::rgb(255, 200, 60));
+    }
+    for (vertices, shift, color) in
+        [(&outline[..], DVec4::ZERO, Color::rgb(120, 160, 230)), (&kept, right, Color::WHITE)]
+    {
+        for (i, start) in vertices.iter().enumerate() {
+            let end = vertices[(i + 1) % vertices.len()];
+            line(framebuffer, start.position + shift, end.position + shift, color);
+        }
+    }
+
+    // An outline leaves where the vertex before the cut was inside, and enters where the one after it is.
+    for (i, cut) in kept.iter().enumerate().filter(|(_, vertex)| !outline.contains(vertex)) {
+        let enters = outline.contains(&kept[(i + 1) % kept.len()]);
+        let color = if enters { Color::rgb(60, 220, 90) } else { Color::rgb(240, 60, 50) };
+        for shift in [DVec4::ZERO, right] {
+            let (x, y) = ((cut.position.x + shift.x) as i32, cut.position.y as i32);
+            framebuffer.fill(Rect { left: x - 4, bottom: y - 4, right: x + 5, top: y + 5 }, color);
+        }
+    }
+}
+// ANCHOR_END: polygon
+
+fn main() -> ExitCode {
+    CHAPTER.main()
+}

@@ -1,0 +1,250 @@
+//! # Chapter 8: the canonical view volume
+//!
+//! **What of the world gets into the picture?** Whatever the size of the screen, what is seen lies between −1 and 1 in
+//! all three directions, once it has been projected and divided. Six planes cut away the rest.
+//!
+//! New here: the frustum and the viewport (`lib/transform.rs`), and clipping with six planes (`lib/clip.rs`).
+//! Book: chapter 8.
+
+use std::process::ExitCode;
+
+use glam::{DVec2, DVec3, DVec4, dvec2, dvec3};
+use rasterbook::clip::{ClipTest, ClipVertex, ClipVolume, DepthRange, NdcVertex, Plane, clip_triangle, fan};
+use rasterbook::depth::{DepthTest, Target};
+use rasterbook::interpolate::{Interpolation, Projected, step_parameter_and_depth};
+use rasterbook::line::{StepAxis, dda};
+use rasterbook::program::{Chapter, Variant};
+use rasterbook::scanline::{Corner, Walk};
+use rasterbook::texture::{AddressMode, Texture};
+use rasterbook::transform::{Frustum, Viewport, perspective_divide};
+use rasterbook::{Color, Framebuffer, Rect};
+
+pub(crate) const CHAPTER: Chapter = Chapter {
+    name: "ch08_cvv",
+    question: "What of the world gets into the picture?",
+    variants: &[
+        Variant::new("clipped", clipped, "a triangle that is larger than the view: cut off at the borders of the picture, and in front at the near plane")
+            .source("section 8.3, Figure 8-9"),
+        Variant::new("ndc", ndc, "a triangle that fits: the frustum's borders become the borders of the picture").source("section 8.2, Figure 8-6"),
+        Variant::new("planes", planes, "the polygon before clipping and after each plane: left, right, bottom, top, near, far; the square is the view")
+            .source("section 8.3, Table 8-1").size(800, 400),
+        Variant::new("frustum", frustum, "left: 35 points in the view volume from above, the eye at the bottom; right: the same in NDC. Equal steps in depth crowd together far away")
+            .source("section 8.1, Figure 8-4").size(760, 400),
+        Variant::new("divide-first", divide_first, "a floor that passes under the eye, tested after the divide: behind us the comparison turns round, and the floor is cut off far before our feet")
+            .source("section 8.3").mended_by("clip-first"),
+        Variant::new("clip-first", clip_first, "the same floor, clipped before the divide: it comes up to the near plane, at the lower border").source("section 8.3"),
+        Variant::new("zero-to-one", zero_to_one, "Direct3D's range, 0 ≤ z ≤ ω: another projection, another near plane, the same picture as 'clipped'"),
+    ],
+};
+
+/// The view of this chapter: as many units on the near plane as the picture has pixels.
+const VIEW: Frustum =
+    Frustum { left: -320.0, right: 320.0, bottom: -240.0, top: 240.0, near: 5.0, far: 20.0 };
+const ASPECT: f64 = 4.0 / 3.0;
+
+// ANCHOR: draw
+/// Draws a triangle from clip space: clip, divide, lay onto the screen, fill with depth test.
+fn draw(target: &mut Target, triangle: [ClipVertex<2>; 3], planes: &[Plane], test: ClipTest) {
+    let texture = Texture::book();
+    let Target { color, depth } = target;
+    let viewport = Viewport::fitting(color.rect(), ASPECT);
+    for piece in fan(&clip_triangle(triangle, planes, test)) {
+        let corners = piece.map(|vertex| {
+            let NdcVertex { position, w, varyings } = vertex.into();
+            let attributes = (Projected { w, values: varyings }, position.z);
+            Corner { position: viewport.pixel_corners(position), attributes }
+        });
+        let window = color.rect();
+        step_parameter_and_depth(
+            corners,
+            Interpolation::PerspectiveCorrect,
+            Walk::default(),
+            window,
+            |x, y, point, z| {
+                if depth.test_and_set(x, y, z, DepthTest::LessOrEqual) {
+                    color.set(x, y, Color::truncated(texture.nearest(point.values, AddressMode::Clamp)));
+                }
+            },
+        );
+    }
+}
+
+/// A corner in camera space, and its texture coordinates.
+type SpaceCorner = ([f64; 3], [f64; 2]);
+
+/// Draws triangles into a cleared picture; `project` takes camera space to clip space.
+fn draw_all(
+    framebuffer: &mut Framebuffer,
+    triangles: &[[SpaceCorner; 3]],
+    project: impl Fn(DVec3) -> DVec4,
+    range: DepthRange,
+    test: ClipTest,
+) {
+    let mut target = Target::new(framebuffer.width(), framebuffer.height());
+    target.clear(Color::BLACK, 1.0);
+    for corners in triangles {
+        let vertices = corners.map(|(view, uv)| ClipVertex { position: project(view.into()), varyings: uv });
+        draw(&mut target, vertices, &ClipVolume::Canonical.planes(range), test);
+    }
+    *framebuffer = target.color;
+}
+// ANCHOR_END: draw
+
+/// A triangle that fits into the view.
+fn ndc(framebuffer: &mut Framebuffer) {
+    let corners = [
+        ([-320.0, 240.0, 10.0], [0.0, 1.0]),
+        ([-320.0, -240.0, 10.0], [0.0, 0.0]),
+        ([320.0, -240.0, 10.0], [1.0, 0.0]),
+    ];
+    draw_all(
+        framebuffer,
+        &[corners],
+        |view| VIEW.project(view),
+        DepthRange::NegativeOneToOne,
+        ClipTest::BeforeDivide,
+    );
+}
+
+/// A triangle that is larger than the view and comes nearer than the near plane.
+const LARGE: [SpaceCorner; 3] = [
+    ([-512.0, 384.0, 10.0], [0.0, 1.0]),
+    ([-512.0, -384.0, 10.0], [0.0, 0.0]),
+    ([512.0, -384.0, 4.0], [1.0, 0.0]),
+];
+
+/// Clipped by the six planes.
+fn clipped(framebuffer: &mut Framebuffer) {
+    draw_all(
+        framebuffer,
+        &[LARGE],
+        |view| VIEW.project(view),
+        DepthRange::NegativeOneToOne,
+        ClipTest::BeforeDivide,
+    );
+}
+
+/// The same with z from 0 to ω.
+fn zero_to_one(framebuffer: &mut Framebuffer) {
+    draw_all(
+        framebuffer,
+        &[LARGE],
+        |view| VIEW.project_zero_to_one(view),
+        DepthRange::ZeroToOne,
+        ClipTest::BeforeDivide,
+    );
+}
+
+// ANCHOR: divide_first
+/// A floor of two triangles, from behind the eye to the far plane.
+const PASSING: [[SpaceCorner; 3]; 2] = {
+    let [a, b] = [([-700.0, -240.0, -9.0], [0.0, 0.0]), ([700.0, -240.0, -9.0], [1.0, 0.0])];
+    let [c, d] = [([700.0, -240.0, 19.0], [1.0, 1.0]), ([-700.0, -240.0, 19.0], [0.0, 1.0])];
+    [[a, b, c], [a, c, d]]
+};
+
+/// The comparison after the divide.
+fn divide_first(framebuffer: &mut Framebuffer) {
+    draw_all(
+        framebuffer,
+        &PASSING,
+        |view| VIEW.project(view),
+        DepthRange::NegativeOneToOne,
+        ClipTest::AfterDivide,
+    );
+}
+
+/// The comparison before the divide.
+fn clip_first(framebuffer: &mut Framebuffer) {
+    draw_all(
+        framebuffer,
+        &PASSING,
+        |view| VIEW.project(view),
+        DepthRange::NegativeOneToOne,
+        ClipTest::BeforeDivide,
+    );
+}
+// ANCHOR_END: divide_first
+
+fn draw_line(framebuffer: &mut Framebuffer, a: DVec2, b: DVec2, color: Color) {
+    dda(a, b, StepAxis::Longer, framebuffer.rect(), |x, y| framebuffer.set(x, y, color));
+}
+
+/// A square of pixels around a point.
+fn dot(framebuffer: &mut Framebuffer, point: DVec2, color: Color) {
+    let (x, y) = (point.x as i32, point.y as i32);
+    framebuffer.fill(Rect { left: x - 2, bottom: y - 2, right: x + 3, top: y + 3 }, color);
+}
+
+// ANCHOR: plane_by_plane
+/// The polygon in NDC after no plane, one, two, … six; in each panel the view is the square in the middle.
+fn planes(framebuffer: &mut Framebuffer) {
+    const PANEL: f64 = 200.0;
+    framebuffer.clear(Color::gray(24));
+    let corners = [[-10_400.0, 2600.0, 90.0], [58.0, -245.0, 3.0], [820.0, 576.0, 8.0]];
+    let triangle = corners.map(|view| ClipVertex { position: VIEW.project(DVec3::from(view)), varyings: [] });
+    for count in 0..=6 {
+        let middle = PANEL * dvec2(0.5 + (count % 4) as f64, if count < 4 { 1.5 } else { 0.5 });
+        let place = |vertex: &ClipVertex<0>| middle + perspective_divide(vertex.position).truncate() * 45.0;
+
+        let view = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
+            .map(|corner| middle + DVec2::from(corner) * 45.0);
+        for i in 0..4 {
+            draw_line(framebuffer, view[i], view[(i + 1) % 4], Color::gray(110));
+        }
+        let polygon = clip_triangle(triangle, &Plane::CANONICAL[..count], ClipTest::BeforeDivide);
+        for (i, vertex) in polygon.iter().enumerate() {
+            let next = &polygon[(i + 1) % polygon.len()];
+            draw_line(framebuffer, place(vertex), place(next), Color::rgb(110, 190, 255));
+        }
+        for vertex in &polygon {
+            dot(framebuffer, place(vertex), Color::rgb(255, 200, 60));
+        }
+    }
+}
+// ANCHOR_END: plane_by_plane
+
+// ANCHOR: frustum
+/// Rows of points at equal steps of depth, from above: in camera space on the left, in NDC on the right.
+fn frustum(framebuffer: &mut Framebuffer) {
+    const ROWS: [Color; 5] = [
+        Color::rgb(255, 90, 80),
+        Color::rgb(255, 180, 60),
+        Color::rgb(240, 240, 90),
+        Color::rgb(100, 220, 120),
+        Color::rgb(100, 160, 255),
+    ];
+    let view = Frustum { left: -1.0, right: 1.0, bottom: -1.0, top: 1.0, near: 2.0, far: 10.0 };
+    let in_camera = |p: DVec3| dvec2(190.0, 30.0) + dvec2(p.x, p.z) * 34.0;
+    let in_ndc = |p: DVec3| {
+        let ndc = perspective_divide(view.project(p));
+        dvec2(570.0, 200.0) + dvec2(ndc.x, ndc.z) * 150.0
+    };
+    let point = |column: i32, row: i32| {
+        let z = 2.0 + 2.0 * f64::from(row);
+        // The borders of the view are at x = ±z · right / near.
+        dvec3(f64::from(column - 3) / 3.0 * z / 2.0, 0.0, z)
+    };
+
+    for place in [&in_camera as &dyn Fn(DVec3) -> DVec2, &in_ndc] {
+        for column in 0..7 {
+            draw_line(framebuffer, place(point(column, 0)), place(point(column, 4)), Color::gray(90));
+        }
+        for (row, color) in (0..).zip(ROWS) {
+            draw_line(framebuffer, place(point(0, row)), place(point(6, row)), color);
+            for column in 0..7 {
+                dot(framebuffer, place(point(column, row)), color);
+            }
+        }
+    }
+    // The eye, and the two rays along the borders.
+    for column in [0, 6] {
+        draw_line(framebuffer, in_camera(DVec3::ZERO), in_camera(point(column, 0)), Color::gray(60));
+    }
+    dot(framebuffer, in_camera(DVec3::ZERO), Color::WHITE);
+}
+// ANCHOR_END: frustum
+
+fn main() -> ExitCode {
+    CHAPTER.main()
+}

@@ -1,0 +1,381 @@
+//! Chapters 7 and 8: cutting away what cannot be projected, or is not to be seen.
+//!
+//! Takes a polygon in clip space, before the perspective divide, and gives the part of it that lies inside a list of
+//! planes. Values need no correction here: before the divide, space is still straight, and what changes evenly along an
+//! edge in camera space changes evenly along it in clip space.
+//!
+//! ```
+//! use glam::dvec4;
+//! use rasterbook::clip::{ClipVertex, Plane, clip_triangle};
+//!
+//! let vertex = |x, w, u| ClipVertex { position: dvec4(x, 0.0, 0.0, w), varyings: [u] };
+//! let triangle = [vertex(0.0, 1.0, 0.0), vertex(4.0, 1.0, 1.0), vertex(0.0, 5.0, 0.0)];
+//! let clipped = clip_triangle(triangle, &[Plane::RIGHT], Default::default());
+//! assert_eq!(clipped.len(), 4); // the corner at x = 4, beyond x = ω, is cut off
+//! ```
+
+use std::array::from_fn;
+
+use arrayvec::ArrayVec;
+use glam::{DVec3, DVec4, dvec4};
+
+/// A vertex in clip space, with the values that it carries.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClipVertex<const N: usize> {
+    /// (x, y, z, ω), before the perspective divide.
+    pub position: DVec4,
+    /// The values, as they are in space.
+    pub varyings: [f64; N],
+}
+
+impl<const N: usize> ClipVertex<N> {
+    /// The point at the parameter t between two vertices; position and values change evenly.
+    fn between(a: Self, b: Self, t: f64) -> Self {
+        Self {
+            position: a.position + (b.position - a.position) * t,
+            varyings: from_fn(|i| a.varyings[i] + (b.varyings[i] - a.varyings[i]) * t),
+        }
+    }
+}
+
+/// A plane in clip space, given by a signed distance: not negative inside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plane {
+    normal: DVec4,
+    offset: f64,
+}
+
+// ANCHOR: planes
+impl Plane {
+    /// ω + x ≥ 0.
+    pub const LEFT: Self = Self::through_eye(dvec4(1.0, 0.0, 0.0, 1.0));
+    /// ω − x ≥ 0.
+    pub const RIGHT: Self = Self::through_eye(dvec4(-1.0, 0.0, 0.0, 1.0));
+    /// ω + y ≥ 0.
+    pub const BOTTOM: Self = Self::through_eye(dvec4(0.0, 1.0, 0.0, 1.0));
+    /// ω − y ≥ 0.
+    pub const TOP: Self = Self::through_eye(dvec4(0.0, -1.0, 0.0, 1.0));
+    /// ω + z ≥ 0, where NDC run from −1.
+    pub const NEAR: Self = Self::through_eye(dvec4(0.0, 0.0, 1.0, 1.0));
+    /// z ≥ 0, where NDC run from 0 (Direct3D).
+    pub const NEAR_ZERO: Self = Self::through_eye(dvec4(0.0, 0.0, 1.0, 0.0));
+    /// ω − z ≥ 0.
+    pub const FAR: Self = Self::through_eye(dvec4(0.0, 0.0, -1.0, 1.0));
+
+    /// The six planes of the canonical view volume, in the order of the book (section 8.3, Table 8-1).
+    pub const CANONICAL: [Self; 6] =
+        [Self::LEFT, Self::RIGHT, Self::BOTTOM, Self::TOP, Self::NEAR, Self::FAR];
+    /// The same where z runs from 0 to ω.
+    pub const ZERO_TO_ONE: [Self; 6] =
+        [Self::LEFT, Self::RIGHT, Self::BOTTOM, Self::TOP, Self::NEAR_ZERO, Self::FAR];
+
+    /// All points with normal · (x, y, z, ω) ≥ 0.
+    #[must_use]
+    pub const fn through_eye(normal: DVec4) -> Self {
+        Self { normal, offset: 0.0 }
+    }
+
+    /// ω ≥ `distance`: what is at least so far in front of the eye. Book, section 7.4.
+    #[must_use]
+    pub const fn in_front(distance: f64) -> Self {
+        Self { normal: dvec4(0.0, 0.0, 0.0, 1.0), offset: -distance }
+    }
+
+    /// How far inside a point is; negative outside.
+    #[must_use]
+    pub fn signed_distance(&self, position: DVec4) -> f64 {
+        self.normal.dot(position) + self.offset
+    }
+}
+// ANCHOR_END: planes
+
+/// On which coordinates the distance to a plane is measured.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ClipTest {
+    /// Clip space: x is compared with ω.
+    #[default]
+    BeforeDivide,
+    /// NDC: x/ω is compared with 1, a mistake.
+    ///
+    /// - Cause: behind the eye ω is negative, and the division turns the comparison round: what is outside seems inside.
+    ///   Nor is x/ω even along an edge, so that the cut is made in the wrong place.
+    /// - Artefact: a triangle that passes the eye is cut where it should not be, or turns up where nothing is.
+    /// - Remedy: [`ClipTest::BeforeDivide`]. Book, section 8.3; second note, the proof about w.
+    AfterDivide,
+}
+
+impl ClipTest {
+    fn signed_distance(self, plane: &Plane, position: DVec4) -> f64 {
+        match self {
+            Self::BeforeDivide => plane.signed_distance(position),
+            Self::AfterDivide => plane.signed_distance(position / position.w),
+        }
+    }
+}
+
+/// What a triangle may be cut against.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum ClipVolume {
+    /// Nothing is cut away, a mistake as soon as a vertex is not in front of the eye.
+    ///
+    /// - Cause: a point behind the eye has a negative ω; the divide mirrors it to the other side of the screen, and a
+    ///   point beside the eye (ω = 0) to infinity.
+    /// - Artefact: a triangle that passes the eye turns inside out.
+    /// - Remedy: [`ClipVolume::InFront`]. Book, section 7.3, Figure 7-5.
+    Everything,
+    /// What is at least so far in front of the eye. Book, section 7.4.
+    InFront(f64),
+    /// The canonical view volume, six planes. Book, section 8.3.
+    #[default]
+    Canonical,
+}
+
+/// The range of z in NDC.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum DepthRange {
+    /// −1 at the near plane, 1 at the far plane: the book, and OpenGL.
+    #[default]
+    NegativeOneToOne,
+    /// 0 at the near plane, 1 at the far plane: Direct3D, Vulkan, WebGPU.
+    ZeroToOne,
+}
+
+impl ClipVolume {
+    /// The planes of the volume.
+    #[must_use]
+    pub fn planes(self, range: DepthRange) -> ArrayVec<Plane, 6> {
+        match (self, range) {
+            (Self::Everything, _) => ArrayVec::new(),
+            (Self::InFront(distance), _) => ArrayVec::from_iter([Plane::in_front(distance)]),
+            (Self::Canonical, DepthRange::NegativeOneToOne) => Plane::CANONICAL.into(),
+            (Self::Canonical, DepthRange::ZeroToOne) => Plane::ZERO_TO_ONE.into(),
+        }
+    }
+}
+
+/// The most vertices that a triangle can have after it was cut by six planes: each plane adds at most one.
+pub const MAX_VERTICES: usize = 9;
+
+/// What is left of a triangle, its vertices in order round it; nothing is allocated.
+pub type Polygon<const N: usize> = ArrayVec<ClipVertex<N>, MAX_VERTICES>;
+
+// ANCHOR: clip_polygon
+/// The part of a polygon inside a plane, by the algorithm of Sutherland and Hodgman: clip space → clip space.
+///
+/// ```text
+///        inside │ outside        each edge, from its start to its end:
+///         a ────┼──── b            in  → in    keep the start
+///         │     ┊    ╱             in  → out   keep the start, and the cut
+///         │     ┊  ╱               out → in    keep the cut
+///         d ────┼─ c               out → out   keep nothing
+/// ```
+///
+/// The cut lies at t = d_a / (d_a − d_b), d the signed distances. It is always reckoned from the outer end a to the
+/// inner end b, whatever the direction of the edge: two triangles that share the edge get the same point to the last
+/// bit. Exact for convex polygons; of a concave one the parts stay connected along the plane.
+///
+/// At most `CAP` vertices are kept; a convex polygon gains at most one. Source: book, sections 7.4 and 8.3.
+#[must_use]
+pub fn clip_polygon<const N: usize, const CAP: usize>(
+    polygon: &[ClipVertex<N>],
+    plane: &Plane,
+    test: ClipTest,
+) -> ArrayVec<ClipVertex<N>, CAP> {
+    let mut kept = ArrayVec::new();
+    for (i, &start) in polygon.iter().enumerate() {
+        let end = polygon[(i + 1) % polygon.len()];
+        let [from, to] = [start, end].map(|vertex| test.signed_distance(plane, vertex.position));
+        let (is_start_inside, is_end_inside) = (from >= 0.0, to >= 0.0);
+        if is_start_inside {
+            // Rounding can bend a convex polygon by a hair; a vertex that finds no room is such a hair.
+            let _ = kept.try_push(start);
+        }
+        if is_start_inside != is_end_inside {
+            let cut = if is_start_inside {
+                ClipVertex::between(end, start, to / (to - from))
+            } else {
+                ClipVertex::between(start, end, from / (from - to))
+            };
+            let _ = kept.try_push(cut);
+        }
+    }
+    kept
+}
+// ANCHOR_END: clip_polygon
+
+/// The part of a triangle inside all planes, taken one after the other; empty if nothing is left, or if a coordinate is
+/// not finite.
+#[must_use]
+pub fn clip_triangle<const N: usize>(
+    triangle: [ClipVertex<N>; 3],
+    planes: &[Plane],
+    test: ClipTest,
+) -> Polygon<N> {
+    if !triangle.iter().all(|vertex| vertex.position.is_finite()) {
+        return Polygon::new();
+    }
+    // Most triangles lie inside all planes, or wholly outside one.
+    let mut polygon = Polygon::from_iter(triangle);
+    for plane in planes {
+        let is_inside = |vertex: &ClipVertex<N>| test.signed_distance(plane, vertex.position) >= 0.0;
+        if !polygon.iter().all(is_inside) {
+            polygon = clip_polygon(&polygon, plane, test);
+        }
+    }
+    polygon
+}
+
+/// The triangles of a convex polygon, as a fan from its first vertex. Book, section 7.4, Figure 7-9.
+///
+/// ```text
+///      d ── c         a b c, a c d
+///      │ ╲  │
+///      a ── b     (the diagonal runs from a to c)
+/// ```
+pub fn fan<V: Copy>(polygon: &[V]) -> impl Iterator<Item = [V; 3]> {
+    (2..polygon.len()).map(|i| [polygon[0], polygon[i - 1], polygon[i]])
+}
+
+/// A vertex after the perspective divide.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NdcVertex<const N: usize> {
+    /// Normalized device coordinates, −1..1 inside the view volume.
+    pub position: DVec3,
+    /// ω, kept for perspective-correct interpolation.
+    pub w: f64,
+    /// The values, as they are in space.
+    pub varyings: [f64; N],
+}
+
+impl<const N: usize> From<ClipVertex<N>> for NdcVertex<N> {
+    fn from(vertex: ClipVertex<N>) -> Self {
+        let position = crate::transform::perspective_divide(vertex.position);
+        Self { position, w: vertex.position.w, varyings: vertex.varyings }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec2;
+    use proptest::prelude::*;
+
+    fn position() -> impl Strategy<Value = DVec4> {
+        (-3.0..3.0, -3.0..3.0, -3.0..3.0, -1.0..3.0).prop_map(|(x, y, z, w)| dvec4(x, y, z, w))
+    }
+
+    /// A triangle whose values are its positions, so that a value tells where it came from.
+    fn triangle() -> impl Strategy<Value = [ClipVertex<4>; 3]> {
+        prop::array::uniform3(position().prop_map(|p| ClipVertex { position: p, varyings: p.to_array() }))
+    }
+
+    /// A triangle in the plane, ω = 1, larger than the window.
+    fn flat_triangle() -> impl Strategy<Value = [ClipVertex<0>; 3]> {
+        prop::array::uniform3(
+            (-3.0..3.0, -3.0..3.0)
+                .prop_map(|(x, y)| ClipVertex { position: dvec4(x, y, 0.0, 1.0), varyings: [] }),
+        )
+    }
+
+    fn area(polygon: &[ClipVertex<0>]) -> f64 {
+        let point = |vertex: &ClipVertex<0>| DVec2::new(vertex.position.x, vertex.position.y);
+        let twice: f64 = fan(polygon)
+            .map(|t| crate::area::twice_signed_area(point(&t[0]), point(&t[1]), point(&t[2])))
+            .sum();
+        twice.abs() / 2.0
+    }
+
+    /// The area of a triangle inside the window −1..1, another way: integrate the length of its rows.
+    fn area_by_rows(triangle: &[ClipVertex<0>; 3]) -> f64 {
+        const ROWS: usize = 20_000;
+        let mut area = 0.0;
+        for i in 0..ROWS {
+            let y = -1.0 + (i as f64 + 0.5) * 2.0 / ROWS as f64;
+            let crossings: Vec<f64> = (0..3)
+                .filter_map(|k| {
+                    let (a, b) = (triangle[k].position, triangle[(k + 1) % 3].position);
+                    ((a.y > y) != (b.y > y)).then(|| a.x + (b.x - a.x) * (y - a.y) / (b.y - a.y))
+                })
+                .collect();
+            if let [p, q] = crossings[..] {
+                area += (p.max(q).min(1.0) - p.min(q).max(-1.0)).max(0.0) * 2.0 / ROWS as f64;
+            }
+        }
+        area
+    }
+
+    #[test]
+    fn a_corner_is_cut_off() {
+        let vertex = |x, y, u| ClipVertex { position: dvec4(x, y, 0.0, 1.0), varyings: [u] };
+        let clipped = clip_triangle(
+            [vertex(0.0, 0.0, 0.0), vertex(2.0, 0.0, 8.0), vertex(0.0, 0.5, 0.0)],
+            &[Plane::RIGHT],
+            ClipTest::BeforeDivide,
+        );
+        assert_eq!(
+            clipped.as_slice(),
+            [vertex(0.0, 0.0, 0.0), vertex(1.0, 0.0, 4.0), vertex(1.0, 0.25, 4.0), vertex(0.0, 0.5, 0.0)]
+        );
+    }
+
+    #[test]
+    fn outside_nothing_is_left_and_odd_numbers_are_discarded() {
+        let vertex = |x, w| ClipVertex { position: dvec4(x, 0.5, 0.0, w), varyings: [] };
+        let clip = |triangle| clip_triangle(triangle, &Plane::CANONICAL, ClipTest::BeforeDivide);
+        assert!(clip([vertex(2.0, 1.0), vertex(3.0, 1.0), vertex(2.5, 1.5)]).is_empty());
+        assert!(clip([vertex(0.0, -1.0), vertex(0.5, -1.0), vertex(0.5, -2.0)]).is_empty(), "behind the eye");
+        for odd in [f64::NAN, f64::INFINITY] {
+            assert!(clip([vertex(odd, 1.0), vertex(0.0, 1.0), vertex(0.5, odd)]).is_empty());
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_left_is_inside_every_plane(t in triangle()) {
+            for vertex in clip_triangle(t, &Plane::CANONICAL, ClipTest::BeforeDivide) {
+                for plane in &Plane::CANONICAL {
+                    prop_assert!(plane.signed_distance(vertex.position) >= -1e-12);
+                }
+                let told = DVec4::from_array(vertex.varyings);
+                prop_assert!((told - vertex.position).length() < 1e-12, "values stay with their places");
+            }
+        }
+
+        #[test]
+        fn a_shared_edge_is_cut_in_the_same_point(t in triangle(), other in position()) {
+            // The same edge in the other direction, as in the neighbouring triangle.
+            let neighbour = [t[1], t[0], ClipVertex { position: other, varyings: other.to_array() }];
+            for plane in &Plane::CANONICAL {
+                let cut = |t: &[ClipVertex<4>; 3]| {
+                    let [a, b] = [t[0], t[1]];
+                    let line: ArrayVec<_, 4> = clip_polygon(&[a, b], plane, ClipTest::BeforeDivide);
+                    line.into_iter().filter(|vertex| *vertex != a && *vertex != b).collect::<Vec<_>>()
+                };
+                let (mine, theirs) = (cut(&t), cut(&neighbour));
+                prop_assert!(mine.iter().all(|vertex| theirs.contains(vertex)), "{mine:?} {theirs:?}");
+            }
+        }
+
+        #[test]
+        fn area_is_that_of_the_intersection(t in flat_triangle()) {
+            let clipped = clip_triangle(t, &Plane::CANONICAL[..4], ClipTest::BeforeDivide);
+            prop_assert!((area(&clipped) - area_by_rows(&t)).abs() < 2e-3);
+        }
+
+        #[test]
+        fn the_order_of_the_planes_does_not_matter(t in flat_triangle(), order in Just([0, 1, 2, 3]).prop_shuffle()) {
+            let planes = order.map(|i| Plane::CANONICAL[i]);
+            let [a, b] = [&Plane::CANONICAL[..4], &planes].map(|planes| area(&clip_triangle(t, planes, ClipTest::BeforeDivide)));
+            prop_assert!((a - b).abs() < 1e-9);
+        }
+
+        #[test]
+        fn at_most_nine_vertices(t in triangle()) {
+            let mut polygon: ArrayVec<ClipVertex<4>, 64> = t.into_iter().collect();
+            for plane in &Plane::CANONICAL {
+                polygon = clip_polygon(&polygon, plane, ClipTest::BeforeDivide);
+            }
+            prop_assert!(polygon.len() <= MAX_VERTICES);
+        }
+    }
+}

@@ -1,0 +1,197 @@
+//! Chapter 6: which surface is in front. A depth for each pixel, a test, and what a depth is.
+//!
+//! Stands at the end of the data flow, before the framebuffer: a fragment that fails the test is dropped.
+//!
+//! ```
+//! use rasterbook::Color;
+//! use rasterbook::depth::{DepthTest, Target};
+//!
+//! let mut target = Target::new(4, 3);
+//! target.clear(Color::BLACK, 1000.0);
+//! assert!(target.depth.test_and_set(1, 1, 340.0, DepthTest::LessOrEqual)); // in front of nothing
+//! assert!(!target.depth.test_and_set(1, 1, 500.0, DepthTest::LessOrEqual)); // behind the first
+//! assert_eq!(target.depth.get(1, 1), Some(340.0));
+//! ```
+
+use crate::{Color, Framebuffer, Rect};
+
+/// When a fragment is drawn: how its depth must compare with the stored one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum DepthTest {
+    /// It must be nearer.
+    Less,
+    /// It must be nearer or equally far: of two equal ones the later wins. Book, section 6.2.
+    #[default]
+    LessOrEqual,
+    /// It must be farther, for buffers in which near is large.
+    Greater,
+    /// It is always drawn, as by the painter's algorithm.
+    Always,
+}
+
+impl DepthTest {
+    /// Whether a fragment at `depth` passes against the stored one. NaN passes only `Always`.
+    #[must_use]
+    pub fn passes(self, depth: f64, stored: f64) -> bool {
+        match self {
+            Self::Less => depth < stored,
+            Self::LessOrEqual => depth <= stored,
+            Self::Greater => depth > stored,
+            Self::Always => true,
+        }
+    }
+}
+
+/// What is stored as the depth of a fragment. Every encoding grows with the distance.
+///
+/// ```text
+///   depth                               near = 1, far = 10
+///     │                          ____
+///     │            ________──────  .·   Reciprocal, Ndc: most of the range is spent
+///     │     _.·──‾‾             .·      on what is near
+///     │   .'                 .·
+///     │  /              .·'             ViewZ: evenly
+///     │ /         . ·'
+///     │/. · '
+///     └────────────────────────────► z
+///      1                           10
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum DepthEncoding {
+    /// The distance z of camera space, which is ω, interpolated like a value: a w-buffer. Book, section 6.2.
+    ViewZ,
+    /// −1/z, linear on the screen: what the divide makes of a clip-space z of −1. Book, section 7.2.
+    Reciprocal,
+    /// z of NDC, a + b/z, from −1 at the near plane to 1 at the far plane; linear on the screen. Book, section 8.2.
+    #[default]
+    Ndc,
+}
+
+/// The depth of hardware buffers, 0 at the near plane and 1 at the far plane, from the distance ω.
+///
+/// Q (ω − n) / ω with Q = f / (f − n): the conversion from a w-buffer to a z-buffer. Source: fourth note, Z-Buffer and
+/// W-Buffer.
+#[must_use]
+pub fn z_from_w(w: f64, near: f64, far: f64) -> f64 {
+    far / (far - near) * (w - near) / w
+}
+
+/// The distance ω from a hardware depth in 0..=1: the inverse of [`z_from_w`].
+#[must_use]
+pub fn w_from_z(z: f64, near: f64, far: f64) -> f64 {
+    near * far / (far - z * (far - near))
+}
+
+/// A depth for each pixel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DepthBuffer {
+    rect: Rect,
+    values: Vec<f64>,
+}
+
+impl DepthBuffer {
+    /// A buffer of `width` × `height` depths, all of them 0.
+    #[must_use]
+    pub fn new(width: u32, height: u32) -> Self {
+        Self { rect: Rect::sized(width, height), values: vec![0.0; width as usize * height as usize] }
+    }
+
+    /// Gives all pixels the same depth.
+    pub fn clear(&mut self, depth: f64) {
+        self.values.fill(depth);
+    }
+
+    /// The depth of the pixel (x, y); `None` outside.
+    #[must_use]
+    pub fn get(&self, x: i32, y: i32) -> Option<f64> {
+        self.rect.index(x, y).map(|index| self.values[index])
+    }
+
+    // ANCHOR: test_and_set
+    /// Whether a fragment at (x, y) passes the test; if so, its depth replaces the stored one. Outside nothing passes.
+    pub fn test_and_set(&mut self, x: i32, y: i32, depth: f64, test: DepthTest) -> bool {
+        let Some(index) = self.rect.index(x, y) else { return false };
+        let passes = test.passes(depth, self.values[index]);
+        if passes {
+            self.values[index] = depth;
+        }
+        passes
+    }
+    // ANCHOR_END: test_and_set
+}
+
+/// What is drawn into: a plane of colors and a plane of depths.
+#[derive(Clone, Debug)]
+pub struct Target {
+    /// The picture.
+    pub color: Framebuffer,
+    /// How far away what is seen in each pixel is.
+    pub depth: DepthBuffer,
+}
+
+impl Target {
+    /// A target of `width` × `height` pixels; clear it before drawing.
+    ///
+    /// # Panics
+    /// As [`Framebuffer::new`] does.
+    #[must_use]
+    pub fn new(width: u32, height: u32) -> Self {
+        Self { color: Framebuffer::new(width, height), depth: DepthBuffer::new(width, height) }
+    }
+
+    /// Gives all pixels a color and a depth: what the last frame has left must not stay. Book, section 9.4.1.
+    pub fn clear(&mut self, color: Color, depth: f64) {
+        self.color.clear(color);
+        self.depth.clear(depth);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::interpolate::{Interpolation, Projected};
+    use proptest::prelude::*;
+
+    #[test]
+    fn tests_by_name() {
+        let passes = |test: DepthTest| [0.25, 0.5, 0.75].map(|depth| test.passes(depth, 0.5));
+        assert_eq!(passes(DepthTest::Less), [true, false, false]);
+        assert_eq!(passes(DepthTest::LessOrEqual), [true, true, false]);
+        assert_eq!(passes(DepthTest::Greater), [false, false, true]);
+        assert_eq!(passes(DepthTest::Always), [true, true, true]);
+        assert!(!DepthTest::LessOrEqual.passes(f64::NAN, 0.5));
+    }
+
+    #[test]
+    fn what_fails_leaves_the_buffer_alone() {
+        let mut buffer = DepthBuffer::new(2, 2);
+        buffer.clear(0.5);
+        assert!(!buffer.test_and_set(0, 0, 0.6, DepthTest::Less));
+        assert_eq!(buffer.get(0, 0), Some(0.5));
+        assert!(!buffer.test_and_set(2, 0, 0.1, DepthTest::Less), "outside");
+    }
+
+    proptest! {
+        #[test]
+        fn conversion_between_w_and_z(w in 1.0..10.0) {
+            let z = z_from_w(w, 1.0, 10.0);
+            prop_assert!((0.0..=1.0).contains(&z));
+            prop_assert!((w_from_z(z, 1.0, 10.0) - w).abs() < 1e-9);
+        }
+
+        #[test]
+        fn a_converted_depth_is_linear_on_the_screen(w in prop::array::uniform2(1.0..10.0), t in 0.0..1.0) {
+            // Book, section 7.5.1: a + b/z changes evenly where ω itself does not.
+            let [a, b] = w.map(|w| Projected { w, values: [] });
+            let seen = Interpolation::PerspectiveCorrect.between(a, b, t).w;
+            let [za, zb, z] = [w[0], w[1], seen].map(|w| z_from_w(w, 1.0, 10.0));
+            prop_assert!((z - (za + (zb - za) * t)).abs() < 1e-12);
+        }
+
+        #[test]
+        fn every_encoding_grows_with_the_distance(z in 1.0..10.0, more in 0.001..5.0) {
+            prop_assert!(z_from_w(z, 1.0, 20.0) < z_from_w(z + more, 1.0, 20.0));
+            prop_assert!(-1.0 / z < -1.0 / (z + more));
+        }
+    }
+}
