@@ -121,7 +121,7 @@ fn clamped(framebuffer: &mut Framebuffer) {
 }
 
 // ANCHOR: tree
-/// A fir tree. Each layer's base is level but for two thousandths of a pixel, so that one step of y moves x by 50,000.
+/// A fir tree. Each layer's base is level but for two thousandths of a pixel, so that one step of y moves x by 30,000 to 100,000.
 fn tree(framebuffer: &mut Framebuffer, walk: Walk) {
     for i in 0..6 {
         let layer = f64::from(i);

@@ -50,7 +50,7 @@ fn draw(
 ) {
     let planes = volume.planes(Default::default());
     let Target { color, depth } = target;
-    for piece in fan(&clip_triangle(triangle, &planes, ClipTest::BeforeDivide)) {
+    for piece in fan(clip_triangle(triangle, &planes, ClipTest::BeforeDivide)) {
         let corners = piece.map(|vertex| {
             let divided = NdcVertex::from(vertex);
             let projected = Projected { w: divided.w, values: divided.varyings };

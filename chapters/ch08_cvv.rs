@@ -48,7 +48,7 @@ fn draw(target: &mut Target, triangle: [ClipVertex<2>; 3], planes: &[Plane], tes
     let texture = Texture::book();
     let Target { color, depth } = target;
     let viewport = Viewport::fitting(color.rect(), ASPECT);
-    for piece in fan(&clip_triangle(triangle, planes, test)) {
+    for piece in fan(clip_triangle(triangle, planes, test)) {
         let corners = piece.map(|vertex| {
             let NdcVertex { position, w, varyings } = vertex.into();
             let attributes = (Projected { w, values: varyings }, position.z);

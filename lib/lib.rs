@@ -12,7 +12,17 @@
 //!   ch3  real          the numbers that interpolation is written for
 //!   ch3  interpolate   barycentric weights, affine and perspective-correct interpolation
 //!   ch3  texture       texels and address modes
-//!   ch4  transform     projection
+//!   ch4  transform     projection, (ch8) frustum, viewport
+//!   ch6  depth         encodings, the test, the target: color and depth
+//!   ch7  clip          signed distance to a plane, Sutherland–Hodgman, clip volumes, the divide
+//!   ch9  cull          which side of a triangle is seen
+//!   ch9  mesh          vertex and index buffers, primitive assembly
+//!   ch9  shader        the Shader trait: attributes → clip space, varyings → color
+//!   ch9  merge         depth test, blending, writing
+//!   ch9  probe         who wants to know what happens to a pixel
+//!   ch9  raster        the door of all rasterizers; the book's scanline rasterizer
+//!   ch9  pipeline      RenderState and draw(): the stages in their order
+//!   ch9  swap_chain    front and back buffer, present
 //!   …    program       what the eleven `main`s share; nothing above imports it
 //! ```
 //!
@@ -43,6 +53,14 @@ pub mod texture;
 pub mod transform;
 pub mod depth;
 pub mod clip;
+pub mod cull;
+pub mod mesh;
+pub mod shader;
+pub mod merge;
+pub mod probe;
+pub mod raster;
+pub mod pipeline;
+pub mod swap_chain;
 
 #[cfg(feature = "program")]
 pub mod program;

@@ -38,7 +38,8 @@ pub enum StepAxis {
 /// Emits the pixels of the line from `a` to `b` (screen space, pixels) that lie in `window`.
 ///
 /// The running coordinate goes up by one from the lower end, the other one by the slope; the pixel is where both are
-/// cut to whole numbers. The end point is not drawn, so that a chain of lines draws no joint twice.
+/// cut to whole numbers. The right end, of a steep line the upper end, is not drawn: a chain of lines that goes on to the
+/// right draws no joint twice. Where a chain turns back, its joint may be drawn by neither line.
 ///
 /// ```text
 ///     y                    k = Δy/Δx = 1/3

@@ -41,7 +41,7 @@ fn names_are_unique_and_look_says_something() {
 
 fn draw(chapter: &str, name: &str) -> Framebuffer {
     let variant = variant(chapter, name);
-    variant.draw(variant.size.0, variant.size.1)
+    variant.draw(variant.size, 0)
 }
 
 fn count(picture: &Framebuffer, is_meant: impl Fn(i32, i32, Color) -> bool) -> usize {

@@ -38,15 +38,26 @@ fn eprintln_page(page: &Path) {
 struct Picture {
     program: &'static str,
     variant: &'static str,
+    frame: Option<u32>,
     name: String,
 }
 
 fn all_pictures() -> impl Iterator<Item = Picture> {
-    CHAPTERS.iter().flat_map(|&(chapter, program)| {
-        chapter.variants.iter().map(move |variant| Picture {
+    let rows = CHAPTERS.iter().flat_map(|&(chapter, program)| {
+        chapter.variants.iter().map(move |variant| (chapter, program, variant))
+    });
+    rows.flat_map(|(chapter, program, variant)| {
+        let name = format!("{}__{}", chapter.name, variant.name);
+        // Of an animation the first, a middle and the last frame.
+        let frames = match variant.animation() {
+            None => vec![None],
+            Some(animation) => [0, animation.frames / 2, animation.frames - 1].map(Some).to_vec(),
+        };
+        frames.into_iter().map(move |frame| Picture {
             program,
             variant: variant.name,
-            name: format!("{}__{}", chapter.name, variant.name),
+            frame,
+            name: frame.map_or_else(|| name.clone(), |frame| format!("{name}@{frame:03}")),
         })
     })
 }
@@ -62,7 +73,12 @@ impl Picture {
     /// Runs the program as a reader would, and takes the file that it wrote.
     fn draw(&self) -> Result<Vec<u8>, Failed> {
         let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{}.png", self.name));
-        let output = Command::new(self.program).arg(self.variant).arg("--out").arg(&file).output()?;
+        let mut command = Command::new(self.program);
+        command.arg(self.variant).arg("--out").arg(&file);
+        if let Some(frame) = self.frame {
+            command.arg("--frame").arg(frame.to_string());
+        }
+        let output = command.output()?;
         if !output.status.success() {
             return Err(String::from_utf8_lossy(&output.stderr).into_owned().into());
         }

@@ -3,7 +3,6 @@
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-use clap::error::ErrorKind;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 
 use super::chapter::{Chapter, Mistake};
@@ -22,6 +21,8 @@ pub(super) struct Request {
     pub(super) out: Option<PathBuf>,
     pub(super) size: Option<(u32, u32)>,
     pub(super) zoom: Option<Zoom>,
+    pub(super) frame: Option<u32>,
+    pub(super) animate: bool,
     pub(super) compare: Option<Comparison>,
 }
 
@@ -40,23 +41,19 @@ impl Request {
         chapter: &Chapter,
         arguments: impl IntoIterator<Item = OsString>,
     ) -> Result<Self, clap::Error> {
-        let mut command = command(chapter);
-        let matches = command.try_get_matches_from_mut(arguments)?;
+        let matches = command(chapter).try_get_matches_from(arguments)?;
         let text = |id: &str| matches.get_one::<String>(id).cloned();
-        let request = Self {
+        Ok(Self {
             list: matches.get_flag("list"),
             all: matches.get_flag("all"),
             variant: text("variant"),
             out: matches.get_one::<PathBuf>("out").cloned(),
             size: matches.get_one("size").copied(),
             zoom: matches.get_one("zoom").copied(),
+            frame: matches.get_one("frame").copied(),
+            animate: matches.get_flag("animate"),
             compare: comparison(&matches),
-        };
-        if request.all && request.compare.is_some() {
-            let reason = "--compare takes one variant, not --all";
-            return Err(command.error(ErrorKind::ArgumentConflict, reason));
-        }
-        Ok(request)
+        })
     }
 }
 
@@ -66,50 +63,58 @@ fn comparison(matches: &ArgMatches) -> Option<Comparison> {
 }
 
 fn command(chapter: &Chapter) -> Command {
-    let option = |id: &'static str, value: &'static str, help: String| {
-        Arg::new(id).long(id).value_name(value).help(help)
-    };
-    let switch =
-        |id: &'static str, help: &'static str| Arg::new(id).long(id).action(ArgAction::SetTrue).help(help);
+    let after =
+        format!("Variants:\n{}\nWritten files are printed on standard output, a line each.", list(chapter));
     Command::new(chapter.name)
         .about(chapter.question)
         .override_usage(format!("cargo run --bin {} -- [VARIANT] [OPTIONS]", chapter.name))
-        .after_help(format!(
-            "Variants:\n{}\nWritten files are printed on standard output, a line each.",
-            list(chapter)
-        ))
+        .after_help(after)
         .max_term_width(100)
         .disable_version_flag(true)
-        .arg(Arg::new("variant").value_name("VARIANT").help(format!(
-            "The picture to draw [default: {}]",
-            chapter.lead().name
-        )))
-        .arg(switch("list", "List the variants: what each is called and what to look for").exclusive(true))
-        .arg(switch("all", "Draw all variants").conflicts_with("variant"))
-        .arg(
-            option("out", "PATH", format!("Where to write: a file (.png .bmp .tga .ppm) or a folder [default: out/{}]", chapter.name))
-                .value_parser(value_parser!(PathBuf)),
+        .args(what_to_draw(chapter))
+        .args(how_to_draw(chapter))
+}
+
+fn switch(id: &'static str, help: &'static str) -> Arg {
+    Arg::new(id).long(id).action(ArgAction::SetTrue).help(help)
+}
+
+fn option(id: &'static str, value: &'static str, help: impl Into<String>) -> Arg {
+    Arg::new(id).long(id).value_name(value).help(help.into())
+}
+
+fn what_to_draw(chapter: &Chapter) -> [Arg; 3] {
+    let variant = format!("The picture to draw [default: {}]", chapter.lead().name);
+    [
+        Arg::new("variant").value_name("VARIANT").help(variant),
+        switch("list", "List the variants: what each is called and what to look for").exclusive(true),
+        switch("all", "Draw all variants, of animations the first frame").conflicts_with("variant"),
+    ]
+}
+
+fn how_to_draw(chapter: &Chapter) -> [Arg; 6] {
+    let out = format!(
+        "A file (.png .bmp .tga .ppm; animations .gif .png) or a folder [default: out/{}]",
+        chapter.name
+    );
+    let zoom = "Draw each pixel as N×N, around the pixel (X, Y), y up from the bottom; from 8 on with a grid";
+    [
+        option("out", "PATH", out).value_parser(value_parser!(PathBuf)),
+        option("size", "WxH", "Size of the picture in pixels, such as 1920x1080").value_parser(parse_size),
+        option("frame", "N", "Draw one frame of an animation [default: 0]")
+            .value_parser(value_parser!(u32))
+            .conflicts_with("all"),
+        switch("animate", "Draw all frames of an animation into one file")
+            .conflicts_with_all(["all", "frame", "compare"]),
+        option("zoom", "N[@X,Y]", zoom).value_parser(parse_zoom),
+        option(
+            "compare",
+            "OTHER",
+            "Draw this | OTHER | where they differ; OTHER is a mistake's remedy unless told",
         )
-        .arg(
-            option("size", "WxH", "Size of the picture in pixels, such as 1920x1080".to_owned())
-                .value_parser(parse_size),
-        )
-        .arg(
-            option(
-                "zoom",
-                "N[@X,Y]",
-                "Draw each pixel as N×N, around the pixel (X, Y), y up from the bottom; from 8 on with a grid".to_owned(),
-            )
-            .value_parser(parse_zoom),
-        )
-        .arg(
-            option(
-                "compare",
-                "OTHER",
-                "Draw this | OTHER | where they differ; OTHER is a mistake's remedy unless told".to_owned(),
-            )
-            .num_args(0..=1),
-        )
+        .num_args(0..=1)
+        .conflicts_with("all"),
+    ]
 }
 
 /// The variants of a chapter, a line each: name, then what to look for.

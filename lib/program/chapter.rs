@@ -52,7 +52,24 @@ pub struct Variant {
     pub size: (u32, u32),
     /// For a deliberate mistake: that it is one, and which variant mends it.
     pub mistake: Mistake,
-    draw: fn(&mut Framebuffer),
+    figure: Figure,
+}
+
+/// What draws a picture.
+#[derive(Clone, Copy, Debug)]
+enum Figure {
+    Still(fn(&mut Framebuffer)),
+    /// Its second argument is the number of the frame.
+    Animated(fn(&mut Framebuffer, u32), Animation),
+}
+
+/// How long an animation is, and how fast.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Animation {
+    /// The number of frames; they are numbered from 0.
+    pub frames: u32,
+    /// Frames in a second.
+    pub rate: u32,
 }
 
 /// Whether a variant is a deliberate mistake.
@@ -70,7 +87,19 @@ impl Variant {
     /// A right picture of 640×480 pixels.
     #[must_use]
     pub const fn new(name: &'static str, draw: fn(&mut Framebuffer), look: &'static str) -> Self {
-        Self { name, look, source: "", size: (640, 480), mistake: Mistake::No, draw }
+        Self { name, look, source: "", size: (640, 480), mistake: Mistake::No, figure: Figure::Still(draw) }
+    }
+
+    /// An animation of 640×480 pixels; `draw` gets the number of a frame, and each frame can be drawn by itself.
+    #[must_use]
+    pub const fn animated(
+        name: &'static str,
+        draw: fn(&mut Framebuffer, u32),
+        animation: Animation,
+        look: &'static str,
+    ) -> Self {
+        let figure = Figure::Animated(draw, animation);
+        Self { name, look, source: "", size: (640, 480), mistake: Mistake::No, figure }
     }
 
     /// The same, of another size in pixels.
@@ -97,14 +126,26 @@ impl Variant {
         Self { mistake: Mistake::Unmended, ..self }
     }
 
-    /// Draws the picture into a new framebuffer of the given size in pixels.
+    /// How long and how fast it is, if it is an animation.
+    #[must_use]
+    pub const fn animation(&self) -> Option<Animation> {
+        match self.figure {
+            Figure::Still(_) => None,
+            Figure::Animated(_, animation) => Some(animation),
+        }
+    }
+
+    /// Draws the picture, or a frame of the animation, into a new framebuffer of the given size in pixels.
     ///
     /// # Panics
     /// As [`Framebuffer::new`] does.
     #[must_use]
-    pub fn draw(&self, width: u32, height: u32) -> Framebuffer {
+    pub fn draw(&self, (width, height): (u32, u32), frame: u32) -> Framebuffer {
         let mut framebuffer = Framebuffer::new(width, height);
-        (self.draw)(&mut framebuffer);
+        match self.figure {
+            Figure::Still(draw) => draw(&mut framebuffer),
+            Figure::Animated(draw, _) => draw(&mut framebuffer, frame),
+        }
         framebuffer
     }
 }

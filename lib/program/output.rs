@@ -10,7 +10,7 @@ use super::Failure;
 use crate::Framebuffer;
 
 /// Image formats that are often asked for and not written here.
-const UNSUPPORTED: [&str; 8] = ["jpg", "jpeg", "gif", "webp", "tif", "tiff", "svg", "pdf"];
+const UNSUPPORTED: [&str; 7] = ["jpg", "jpeg", "webp", "tif", "tiff", "svg", "pdf"];
 
 /// Where the pictures of one run go.
 #[derive(Debug, PartialEq, Eq)]
@@ -24,37 +24,89 @@ pub(super) enum Destination {
 impl Destination {
     /// `--out PATH`: a file if it ends in a known image extension, else a folder.
     pub(super) fn new(path: PathBuf) -> Result<Self, Failure> {
-        let extension =
-            path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
-        match extension.as_deref() {
-            Some("png" | "bmp" | "tga" | "ppm") => Ok(Self::File(path)),
+        match extension(&path).as_deref() {
+            Some("png" | "bmp" | "tga" | "ppm" | "gif") => Ok(Self::File(path)),
             Some(other) if UNSUPPORTED.contains(&other) => Err(Failure::Usage(format!(
-                "cannot write {}: the formats are .png .bmp .tga .ppm",
+                "cannot write {}: the formats are .png .bmp .tga .ppm, of animations .gif .png",
                 path.display()
             ))),
             _ => Ok(Self::Folder(path)),
         }
     }
 
+    /// Where the picture called `name` goes.
+    fn path(&self, name: &str, extension: &str) -> PathBuf {
+        match self {
+            Self::File(path) => path.clone(),
+            Self::Folder(folder) => folder.join(format!("{name}.{extension}")),
+        }
+    }
+
     /// Writes the picture called `name`, and says where.
     pub(super) fn write(&self, name: &str, picture: &Framebuffer) -> Result<PathBuf, Failure> {
-        let path = match self {
-            Self::File(path) => path.clone(),
-            Self::Folder(folder) => folder.join(format!("{name}.png")),
-        };
+        let path = self.path(name, "png");
+        if extension(&path).as_deref() == Some("gif") {
+            return Err(Failure::Usage(format!("{} is for an animation: give --animate", path.display())));
+        }
         let format = ImageFormat::from_path(&path).unwrap_or(ImageFormat::Png);
         let bytes = encode(picture, format).map_err(|error| cannot_write(&path, &error))?;
         replace(&path, &bytes)?;
         Ok(path)
     }
+
+    /// Writes the animation called `name`, as `encode` makes it for the format, and says where.
+    pub(super) fn write_animation(
+        &self,
+        name: &str,
+        encode: impl FnOnce(AnimationFormat) -> Result<Vec<u8>, Box<dyn std::error::Error>>,
+    ) -> Result<PathBuf, Failure> {
+        let path = self.path(name, "gif");
+        let format = match extension(&path).as_deref() {
+            Some("gif") => AnimationFormat::Gif,
+            Some("png") => AnimationFormat::Png,
+            _ => {
+                return Err(Failure::Usage(format!(
+                    "{}: an animation is a .gif or a .png file",
+                    path.display()
+                )));
+            }
+        };
+        let bytes = encode(format).map_err(|error| cannot_write(&path, error.as_ref()))?;
+        replace(&path, &bytes)?;
+        Ok(path)
+    }
+}
+
+/// What an animation can be written as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum AnimationFormat {
+    /// At most 256 colors a frame.
+    Gif,
+    /// Animated PNG: every color as it is.
+    Png,
+}
+
+/// The extension of a path, in lower case.
+fn extension(path: &Path) -> Option<String> {
+    path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase)
 }
 
 fn encode(picture: &Framebuffer, format: ImageFormat) -> Result<Vec<u8>, image::ImageError> {
-    let channels = picture.rows_from_top().flatten().flat_map(|color| color.channels()).collect();
-    let image = RgbImage::from_raw(picture.width(), picture.height(), channels).unwrap_or_default();
+    let image = RgbImage::from_raw(picture.width(), picture.height(), rgb_bytes(picture)).unwrap_or_default();
     let mut bytes = Cursor::new(Vec::new());
     image.write_to(&mut bytes, format)?;
     Ok(bytes.into_inner())
+}
+
+/// The channels of all pixels, the highest row first.
+pub(super) fn rgb_bytes(picture: &Framebuffer) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(picture.width() as usize * picture.height() as usize * 3);
+    for row in picture.rows_from_top() {
+        for color in row {
+            bytes.extend_from_slice(&color.channels());
+        }
+    }
+    bytes
 }
 
 /// Writes a whole file or nothing: under another name first, which then takes the place of the old file.

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use super::Failure;
+use super::animation::encode;
 use super::arguments::{Comparison, Request, list};
 use super::chapter::{Chapter, Mistake, Variant};
 use super::output::{Destination, note, say};
@@ -48,6 +49,7 @@ fn run(chapter: &Chapter, request: &Request) -> Result<(), Failure> {
         None => chapter.lead(),
     };
     match &request.compare {
+        None if request.animate => animate(variant, request, &destination),
         None => draw_one(variant, request, &destination),
         Some(comparison) => {
             draw_comparison(variant, other(chapter, variant, comparison)?, request, &destination)
@@ -78,10 +80,25 @@ fn other<'a>(
     }
 }
 
-/// The picture of a variant as it was asked for.
-fn picture(variant: &Variant, request: &Request) -> Framebuffer {
-    let (width, height) = request.size.unwrap_or(variant.size);
-    variant.draw(width, height)
+/// The picture of a variant as it was asked for: its size, its frame.
+fn picture(variant: &Variant, request: &Request, frame: u32) -> Framebuffer {
+    variant.draw(request.size.unwrap_or(variant.size), frame)
+}
+
+/// The frame that was asked for, if the variant has it.
+fn frame_of(variant: &Variant, request: &Request) -> Result<u32, Failure> {
+    match (request.frame, variant.animation()) {
+        (None, _) => Ok(0),
+        (Some(_), None) => {
+            Err(Failure::Usage(format!("'{}' is one picture: it has no frames", variant.name)))
+        }
+        (Some(frame), Some(animation)) if frame < animation.frames => Ok(frame),
+        (Some(frame), Some(animation)) => Err(Failure::Usage(format!(
+            "'{}' has no frame {frame}: its frames are 0 to {}",
+            variant.name,
+            animation.frames - 1
+        ))),
+    }
 }
 
 /// The picture, enlarged if that was asked for.
@@ -99,15 +116,30 @@ fn enlarged(picture: Framebuffer, zoom: Option<Zoom>) -> Result<Framebuffer, Fai
 
 /// The file name of a picture, without extension.
 fn name_of(variant: &Variant, request: &Request) -> String {
-    match request.zoom {
-        None => variant.name.to_owned(),
-        Some(zoom) => format!("{}-zoom{}", variant.name, zoom.factor),
-    }
+    let frame = request.frame.map_or_else(String::new, |frame| format!("@{frame:03}"));
+    let zoom = request.zoom.map_or_else(String::new, |zoom| format!("-zoom{}", zoom.factor));
+    format!("{}{frame}{zoom}", variant.name)
 }
 
 fn draw_one(variant: &Variant, request: &Request, destination: &Destination) -> Result<(), Failure> {
-    let picture = enlarged(picture(variant, request), request.zoom)?;
+    let frame = frame_of(variant, request)?;
+    let picture = enlarged(picture(variant, request, frame), request.zoom)?;
     let path = destination.write(&name_of(variant, request), &picture)?;
+    say(&path.display().to_string())
+}
+
+fn animate(variant: &Variant, request: &Request, destination: &Destination) -> Result<(), Failure> {
+    let Some(animation) = variant.animation() else {
+        return Err(Failure::Usage(format!("'{}' is one picture: it cannot be animated", variant.name)));
+    };
+    // The first frame shows whether the zoom makes sense.
+    enlarged(picture(variant, request, 0), request.zoom)?;
+    let draw = |frame| {
+        let picture = picture(variant, request, frame);
+        request.zoom.map_or_else(|| picture.clone(), |zoom| zoomed(&picture, zoom))
+    };
+    let path =
+        destination.write_animation(&name_of(variant, request), |format| encode(format, animation, draw))?;
     say(&path.display().to_string())
 }
 
@@ -117,7 +149,8 @@ fn draw_comparison(
     request: &Request,
     destination: &Destination,
 ) -> Result<(), Failure> {
-    let [first, second] = [this, that].map(|variant| picture(variant, request));
+    let frame = frame_of(this, request)?;
+    let [first, second] = [this, that].map(|variant| picture(variant, request, frame));
     let Some((marked, count)) = difference(&first, &second) else {
         let reason = format!("'{}' and '{}' differ in size: give --size", this.name, that.name);
         return Err(Failure::Usage(reason));

@@ -1,0 +1,130 @@
+//! Chapter 9: the last stage. A shaded fragment meets what has been drawn before.
+//!
+//! Takes a position, a depth and a shaded color; tests the depth, blends, and writes into the target.
+//!
+//! ```
+//! use rasterbook::merge::Blend;
+//!
+//! // Half-transparent red over white.
+//! assert_eq!(Blend::SourceOver.apply([255.0, 0.0, 0.0, 0.5], [255.0; 3]), [255.0, 127.5, 127.5]);
+//! ```
+
+use std::array::from_fn;
+
+use crate::Color;
+use crate::depth::{DepthTest, Target};
+use crate::real::Real;
+use crate::shader::Shaded;
+
+/// How a fragment's color and the color already there make the new one. Second note, output merger.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Blend {
+    /// The fragment replaces what was there.
+    #[default]
+    Opaque,
+    /// The fragment covers what was there as far as it is opaque: s·α + d·(1 − α). The order of drawing matters.
+    SourceOver,
+    /// The fragment's light is added: s·α + d, at most 255.
+    Additive,
+}
+
+impl Blend {
+    /// The new color from the fragment's (with opacity) and the one that is there; channels in 0..=255.
+    #[must_use]
+    pub fn apply<R: Real>(self, [red, green, blue, opacity]: [R; 4], there: [R; 3]) -> [R; 3] {
+        let source = [red, green, blue];
+        match self {
+            Self::Opaque => source,
+            Self::SourceOver => from_fn(|i| source[i] * opacity + there[i] * (R::of(1.0) - opacity)),
+            Self::Additive => from_fn(|i| (source[i] * opacity + there[i]).min(R::of(255.0))),
+        }
+    }
+}
+
+/// The options of the last stage.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Merge {
+    /// How a fragment's depth must compare.
+    pub depth_test: DepthTest,
+    /// Whether a drawn fragment's depth is stored; translucent things often leave the depth alone.
+    pub depth_write: bool,
+    /// How colors are combined.
+    pub blend: Blend,
+}
+
+impl Default for Merge {
+    fn default() -> Self {
+        Self { depth_test: DepthTest::default(), depth_write: true, blend: Blend::default() }
+    }
+}
+
+/// What became of a fragment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// The shader discarded it.
+    Discarded,
+    /// Something nearer was there.
+    Hidden,
+    /// It was drawn, and this is the pixel's new color.
+    Drawn(Color),
+}
+
+// ANCHOR: merge
+/// Merges a fragment into the target at (x, y): depth test, blending, writing; fractions of channels are cut off.
+pub fn merge(
+    target: &mut Target,
+    options: Merge,
+    x: i32,
+    y: i32,
+    depth: f64,
+    shaded: Shaded<f64>,
+) -> Verdict {
+    if !shaded.keep {
+        return Verdict::Discarded;
+    }
+    let passes = if options.depth_write {
+        target.depth.test_and_set(x, y, depth, options.depth_test)
+    } else {
+        target.depth.get(x, y).is_some_and(|stored| options.depth_test.passes(depth, stored))
+    };
+    if !passes {
+        return Verdict::Hidden;
+    }
+    let there = target.color.get(x, y).unwrap_or_default().to_f64();
+    let color = Color::truncated(options.blend.apply(shaded.color, there));
+    target.color.set(x, y, color);
+    Verdict::Drawn(color)
+}
+// ANCHOR_END: merge
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blending() {
+        let there = [100.0, 200.0, 50.0];
+        assert_eq!(Blend::Opaque.apply([1.0, 2.0, 3.0, 0.25], there), [1.0, 2.0, 3.0]);
+        assert_eq!(Blend::SourceOver.apply([200.0, 0.0, 250.0, 0.25], there), [125.0, 150.0, 100.0]);
+        assert_eq!(Blend::Additive.apply([200.0, 200.0, 4.0, 0.5], there), [200.0, 255.0, 52.0]);
+    }
+
+    #[test]
+    fn what_becomes_of_a_fragment() {
+        let mut target = Target::new(2, 1);
+        target.clear(Color::BLACK, 1.0);
+        let red = Shaded::opaque([255.0, 0.0, 0.0]);
+        let mut merge = |options, depth, shaded| merge(&mut target, options, 0, 0, depth, shaded);
+        let untouched = Merge { depth_write: false, ..Merge::default() };
+        assert_eq!(merge(untouched, 0.5, red), Verdict::Drawn(Color::RED));
+        assert_eq!(merge(Merge::default(), 0.7, red), Verdict::Drawn(Color::RED), "0.5 was not stored");
+        assert_eq!(merge(Merge::default(), 0.8, red), Verdict::Hidden, "0.7 was");
+        assert_eq!(merge(untouched, 0.8, red), Verdict::Hidden, "tested all the same");
+        assert_eq!(merge(Merge::default(), 0.1, red.discard(true)), Verdict::Discarded);
+        assert_eq!(
+            merge(Merge::default(), 0.6, red),
+            Verdict::Drawn(Color::RED),
+            "a discarded fragment stores nothing"
+        );
+    }
+}

@@ -1,0 +1,138 @@
+//! Chapter 9: vertex and index buffers, and the triangles that they make.
+//!
+//! The source of the data flow: a list of attribute records, one for each vertex, and a list that says which three of
+//! them make a triangle.
+//!
+//! ```
+//! use rasterbook::mesh::Mesh;
+//!
+//! // A square: four vertices, two triangles.
+//! let square = Mesh::indexed(vec![[0, 0], [1, 0], [1, 1], [0, 1]], vec![0, 1, 2, 0, 2, 3])?;
+//! assert_eq!(square.triangles().collect::<Vec<_>>(), [[0, 1, 2], [0, 2, 3]]);
+//! # Ok::<(), rasterbook::mesh::MeshError>(())
+//! ```
+
+use std::fmt;
+
+/// Vertices, and how they are put together to triangles.
+///
+/// `A` is the attribute record of a vertex: whatever the vertex shader needs, such as a position and texture
+/// coordinates. The book keeps two buffers of numbers side by side (section 9.2, Figure 9-2); a list of records says
+/// the same.
+#[derive(Clone, Debug)]
+pub struct Mesh<A> {
+    vertices: Vec<A>,
+    indices: Option<Vec<u32>>,
+}
+
+/// Why buffers do not make a mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MeshError {
+    /// Triangles need three vertices each.
+    NotTriangles {
+        /// How many vertices or indices there are.
+        count: usize,
+    },
+    /// An index names a vertex that does not exist.
+    IndexOutOfRange {
+        /// The index.
+        index: u32,
+        /// How many vertices there are.
+        vertices: usize,
+    },
+}
+
+impl fmt::Display for MeshError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotTriangles { count } => write!(f, "{count} corners do not make whole triangles"),
+            Self::IndexOutOfRange { index, vertices } => {
+                write!(f, "index {index}, but there are {vertices} vertices")
+            }
+        }
+    }
+}
+
+impl std::error::Error for MeshError {}
+
+impl<A> Mesh<A> {
+    /// Triangles whose vertices stand one after the other: 0 1 2, 3 4 5, …
+    ///
+    /// # Errors
+    /// If the number of vertices is not a multiple of three.
+    pub fn unindexed(vertices: Vec<A>) -> Result<Self, MeshError> {
+        if !vertices.len().is_multiple_of(3) {
+            return Err(MeshError::NotTriangles { count: vertices.len() });
+        }
+        Ok(Self { vertices, indices: None })
+    }
+
+    /// Triangles that name their vertices, so that neighbours share them.
+    ///
+    /// # Errors
+    /// If the number of indices is not a multiple of three, or one of them names no vertex.
+    pub fn indexed(vertices: Vec<A>, indices: Vec<u32>) -> Result<Self, MeshError> {
+        if !indices.len().is_multiple_of(3) {
+            return Err(MeshError::NotTriangles { count: indices.len() });
+        }
+        if let Some(&index) = indices.iter().find(|&&index| index as usize >= vertices.len()) {
+            return Err(MeshError::IndexOutOfRange { index, vertices: vertices.len() });
+        }
+        Ok(Self { vertices, indices: Some(indices) })
+    }
+
+    /// The attribute records.
+    #[must_use]
+    pub fn vertices(&self) -> &[A] {
+        &self.vertices
+    }
+
+    /// How many triangles there are.
+    #[must_use]
+    pub fn triangle_count(&self) -> usize {
+        self.indices.as_ref().map_or(self.vertices.len(), Vec::len) / 3
+    }
+
+    // ANCHOR: triangles
+    /// Primitive assembly: the triangles in order, each as the positions of its three vertices in the list.
+    pub fn triangles(&self) -> impl Iterator<Item = [usize; 3]> {
+        (0..self.triangle_count()).map(|triangle| {
+            [0, 1, 2].map(|corner| {
+                let place = triangle * 3 + corner;
+                self.indices.as_ref().map_or(place, |indices| indices[place] as usize)
+            })
+        })
+    }
+    // ANCHOR_END: triangles
+
+    /// The same triangles without shared vertices.
+    #[must_use]
+    pub fn to_unindexed(&self) -> Self
+    where
+        A: Clone,
+    {
+        let vertices = self.triangles().flatten().map(|index| self.vertices[index].clone()).collect();
+        Self { vertices, indices: None }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unindexed_triangles_are_consecutive() {
+        let mesh = Mesh::unindexed(vec!["a", "b", "c", "d", "e", "f"]).expect("two triangles");
+        assert_eq!(mesh.triangles().collect::<Vec<_>>(), [[0, 1, 2], [3, 4, 5]]);
+        assert_eq!(mesh.triangle_count(), 2);
+    }
+
+    #[test]
+    fn bad_buffers_are_refused() {
+        assert_eq!(Mesh::unindexed(vec![0; 4]).err(), Some(MeshError::NotTriangles { count: 4 }));
+        assert_eq!(Mesh::indexed(vec![0; 4], vec![0, 1]).err(), Some(MeshError::NotTriangles { count: 2 }));
+        let error = Mesh::indexed(vec![0; 4], vec![0, 1, 4]).err();
+        assert_eq!(error, Some(MeshError::IndexOutOfRange { index: 4, vertices: 4 }));
+        assert!(Mesh::<u8>::unindexed(vec![]).is_ok_and(|empty| empty.triangles().next().is_none()));
+    }
+}

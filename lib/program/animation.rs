@@ -1,0 +1,126 @@
+//! Animations: all frames of a variant in one file. Frames are drawn in parallel, and written in their order.
+
+use std::collections::BTreeSet;
+use std::error::Error;
+use std::io::IsTerminal;
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use rayon::prelude::*;
+
+use super::chapter::Animation;
+use super::output::{AnimationFormat, rgb_bytes};
+use crate::{Color, Framebuffer};
+
+/// How many frames are drawn at a time: enough for every core, few enough to stay in memory.
+const BATCH: u32 = 32;
+
+/// Draws all frames and puts them into one file.
+pub(super) fn encode(
+    format: AnimationFormat,
+    animation: Animation,
+    draw: impl Fn(u32) -> Framebuffer + Sync,
+) -> Result<Vec<u8>, Box<dyn Error>> {
+    match format {
+        AnimationFormat::Gif => encode_gif(animation, draw),
+        AnimationFormat::Png => encode_png(animation, draw),
+    }
+}
+
+/// Makes something of every frame, in parallel, and hands it on in order.
+fn for_each_frame<T: Send>(
+    frames: u32,
+    make: impl Fn(u32) -> T + Sync,
+    mut take: impl FnMut(T) -> Result<(), Box<dyn Error>>,
+) -> Result<(), Box<dyn Error>> {
+    let progress = progress_bar(u64::from(frames), "frames");
+    for first in (0..frames).step_by(BATCH as usize) {
+        let batch: Vec<T> = (first..frames.min(first + BATCH)).into_par_iter().map(&make).collect();
+        for made in batch {
+            take(made)?;
+            progress.inc(1);
+        }
+    }
+    progress.finish_and_clear();
+    Ok(())
+}
+
+/// A progress bar on standard error; nothing if that is no terminal.
+pub(super) fn progress_bar(length: u64, what: &'static str) -> ProgressBar {
+    if !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let style = ProgressStyle::with_template("{bar:40} {pos} of {len} {msg}, {eta} left");
+    let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::stderr()).with_message(what);
+    bar.enable_steady_tick(Duration::from_millis(200));
+    match style {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    }
+}
+
+fn encode_png(
+    animation: Animation,
+    draw: impl Fn(u32) -> Framebuffer + Sync,
+) -> Result<Vec<u8>, Box<dyn Error>> {
+    let (width, height) = size_of(&draw(0));
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_animated(animation.frames, 0)?;
+    encoder.set_frame_delay(1, u16::try_from(animation.rate)?)?;
+    let mut writer = encoder.write_header()?;
+    for_each_frame(
+        animation.frames,
+        |frame| rgb_bytes(&draw(frame)),
+        |pixels| Ok(writer.write_image_data(&pixels)?),
+    )?;
+    writer.finish()?;
+    Ok(bytes)
+}
+
+fn encode_gif(
+    animation: Animation,
+    draw: impl Fn(u32) -> Framebuffer + Sync,
+) -> Result<Vec<u8>, Box<dyn Error>> {
+    let (width, height) = size_of(&draw(0));
+    let mut bytes = Vec::new();
+    let mut encoder = gif::Encoder::new(&mut bytes, u16::try_from(width)?, u16::try_from(height)?, &[])?;
+    encoder.set_repeat(gif::Repeat::Infinite)?;
+    // GIF counts in hundredths of a second.
+    let delay = u16::try_from((100 / animation.rate).max(1))?;
+    for_each_frame(
+        animation.frames,
+        |frame| {
+            let mut image = gif_frame(&draw(frame));
+            image.delay = delay;
+            image.make_lzw_pre_encoded();
+            image
+        },
+        |frame| Ok(encoder.write_lzw_pre_encoded_frame(&frame)?),
+    )?;
+    drop(encoder);
+    Ok(bytes)
+}
+
+/// A frame with its own palette: exact for up to 256 colors, else the nearest ones that can be had.
+fn gif_frame(picture: &Framebuffer) -> gif::Frame<'static> {
+    let (width, height) = size_of(picture);
+    let (width, height) = (width as u16, height as u16);
+    let runs: Vec<&[Color]> = picture.rows_from_top().flat_map(|row| row.chunk_by(|a, b| a == b)).collect();
+    let colors: BTreeSet<[u8; 3]> = runs.iter().map(|run| run[0].channels()).collect();
+    if colors.len() > 256 {
+        return gif::Frame::from_rgb_speed(width, height, &rgb_bytes(picture), 10);
+    }
+    let palette: Vec<[u8; 3]> = colors.into_iter().collect();
+    let mut pixels = Vec::with_capacity(usize::from(width) * usize::from(height));
+    for run in runs {
+        let index = palette.binary_search(&run[0].channels()).unwrap_or_default() as u8;
+        pixels.resize(pixels.len() + run.len(), index);
+    }
+    gif::Frame::from_palette_pixels(width, height, pixels, palette.as_flattened(), None)
+}
+
+fn size_of(picture: &Framebuffer) -> (u32, u32) {
+    (picture.width(), picture.height())
+}

@@ -1,0 +1,101 @@
+//! Chapter 9: the door that every rasterizer stands behind, and the first of them.
+//!
+//! A rasterizer takes a stream of triangles in NDC, the state, a shader, a target and a probe. What happens inside
+//! (culling, viewport, coverage, interpolation, shading, merging) is its own business: that is where rasterizers
+//! differ.
+
+use crate::area::{is_drawable, twice_signed_area};
+use crate::clip::NdcVertex;
+use crate::depth::{DepthEncoding, Target};
+use crate::interpolate::{Projected, step_parameter_and_depth};
+use crate::merge::merge;
+use crate::pipeline::RenderState;
+use crate::probe::{FragmentEvent, Probe};
+use crate::scanline::Corner;
+use crate::shader::Shader;
+
+/// Draws triangles, NDC → target.
+pub trait Rasterizer {
+    /// Draws the triangles in order. Fragments reach a pixel in the order of their triangles.
+    fn draw<S: Shader<N>, P: Probe, const N: usize>(
+        &self,
+        triangles: impl Iterator<Item = [NdcVertex<N>; 3]>,
+        state: &RenderState,
+        shader: &S,
+        target: &mut Target,
+        probe: &P,
+    );
+}
+
+/// The book's rasterizer: rows between two edges, from chapter 2, with everything that has come since.
+///
+/// Pixels sit on whole coordinates, and a row that holds a fractional middle vertex belongs to both halves of its
+/// triangle: where blending makes that visible, use whole-pixel vertices.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Scanline;
+
+impl Rasterizer for Scanline {
+    fn draw<S: Shader<N>, P: Probe, const N: usize>(
+        &self,
+        triangles: impl Iterator<Item = [NdcVertex<N>; 3]>,
+        state: &RenderState,
+        shader: &S,
+        target: &mut Target,
+        probe: &P,
+    ) {
+        for triangle in triangles {
+            draw_triangle(&triangle, state, shader, target, probe);
+        }
+    }
+}
+
+// ANCHOR: draw_triangle
+fn draw_triangle<S: Shader<N>, P: Probe, const N: usize>(
+    triangle: &[NdcVertex<N>; 3],
+    state: &RenderState,
+    shader: &S,
+    target: &mut Target,
+    probe: &P,
+) {
+    // 5. Culling, by the signed area in NDC.
+    let [a, b, c] = triangle.map(|vertex| vertex.position.truncate());
+    let signed_area = twice_signed_area(a, b, c);
+    probe.piece(triangle, signed_area);
+    if !is_drawable(signed_area) || state.cull.culls(signed_area, state.front_face) {
+        probe.culled();
+        return;
+    }
+
+    // 6. Viewport: NDC → screen.
+    let window = target.color.rect();
+    let viewport = state.viewport_in(window);
+    let corners = triangle.map(|vertex| {
+        let projected = Projected { w: vertex.w, values: vertex.varyings };
+        Corner {
+            position: viewport.pixel_corners(vertex.position),
+            attributes: (projected, vertex.position.z),
+        }
+    });
+
+    // 7. Rasterization: which pixels, and which values.
+    step_parameter_and_depth(corners, state.interpolation, state.walk, window, |x, y, point, z| {
+        let depth = match state.depth_encoding {
+            DepthEncoding::ViewZ => point.w,
+            DepthEncoding::Reciprocal | DepthEncoding::Ndc => z,
+        };
+        // 8. Fragment shading.
+        let shaded = shader.fragment(point.values);
+        // 9. Depth test, and 10. blending.
+        let verdict = merge(target, state.merge, x, y, depth, shaded);
+        probe.fragment(&FragmentEvent {
+            x,
+            y,
+            w: point.w,
+            depth,
+            varyings: &point.values,
+            color: shaded.color,
+            verdict,
+        });
+    });
+}
+// ANCHOR_END: draw_triangle

@@ -1,0 +1,95 @@
+//! Chapter 9: the two programs that a picture is made with, one for each vertex and one for each fragment.
+//!
+//! The vertex shader stands at the beginning of the data flow, before clipping; the fragment shader behind the
+//! rasterizer, before the depth test.
+//!
+//! ```
+//! use glam::{DVec3, dvec3};
+//! use rasterbook::clip::ClipVertex;
+//! use rasterbook::real::Real;
+//! use rasterbook::shader::{Shaded, Shader};
+//!
+//! /// Brightness follows the height of a point.
+//! struct Height {
+//!     brightest: f64, // a uniform
+//! }
+//!
+//! impl Shader<1> for Height {
+//!     type Attributes = DVec3;
+//!
+//!     fn vertex(&self, view: &DVec3) -> ClipVertex<1> {
+//!         ClipVertex { position: view.extend(view.z), varyings: [view.y] }
+//!     }
+//!
+//!     fn fragment<R: Real>(&self, [height]: [R; 1]) -> Shaded<R> {
+//!         Shaded::opaque([height * R::of(self.brightest); 3])
+//!     }
+//! }
+//!
+//! let shader = Height { brightest: 255.0 };
+//! assert_eq!(shader.vertex(&dvec3(1.0, 0.5, 2.0)).varyings, [0.5]);
+//! assert_eq!(shader.fragment([0.5_f64]).color, [127.5, 127.5, 127.5, 1.0]);
+//! ```
+
+use crate::clip::ClipVertex;
+use crate::real::{Mask, Real};
+
+/// A vertex shader and a fragment shader; what both need and what is the same for all vertices and fragments, the
+/// *uniforms*, are the fields of the struct.
+///
+/// N is the number of *varyings*: the values that the vertex shader hands to the fragment shader, interpolated
+/// perspective-correctly on the way. Book, section 9.2.
+pub trait Shader<const N: usize> {
+    /// What is known of a vertex: the record of the vertex buffer.
+    type Attributes;
+
+    /// Attributes → position in clip space, and varyings.
+    fn vertex(&self, attributes: &Self::Attributes) -> ClipVertex<N>;
+
+    /// Varyings → color. Written for any number type, so that one source serves one fragment or several at a time;
+    /// for that, it keeps no state.
+    fn fragment<R: Real>(&self, varyings: [R; N]) -> Shaded<R>;
+}
+
+/// What a fragment shader says of a fragment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shaded<R: Real> {
+    /// Red, green and blue in 0..=255, and opacity in 0..=1.
+    pub color: [R; 4],
+    /// Where the fragment is drawn at all.
+    pub keep: R::Mask,
+}
+
+impl<R: Real> Shaded<R> {
+    /// A fragment through which nothing shines; channels in 0..=255.
+    #[must_use]
+    pub fn opaque([red, green, blue]: [R; 3]) -> Self {
+        Self::translucent([red, green, blue], R::of(1.0))
+    }
+
+    /// A fragment of some opacity, 0..=1.
+    #[must_use]
+    pub fn translucent([red, green, blue]: [R; 3], opacity: R) -> Self {
+        Self { color: [red, green, blue, opacity], keep: R::Mask::all(true) }
+    }
+
+    /// The same, but not drawn where the mask says so.
+    #[must_use]
+    pub fn discard(self, mask: R::Mask) -> Self {
+        Self { keep: self.keep.and(mask.not()), ..self }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn discarding() {
+        let shaded: Shaded<f64> = Shaded::opaque([1.0, 2.0, 3.0]);
+        assert!(shaded.keep);
+        assert!(!shaded.discard(1.0_f64.is_less(2.0)).keep);
+        assert!(shaded.discard(2.0_f64.is_less(1.0)).keep);
+        assert!(!shaded.discard(true).discard(false).keep, "what is discarded stays so");
+    }
+}
