@@ -8,7 +8,20 @@ use rasterbook::program::Mistake;
 use rasterbook::{Color, Framebuffer};
 
 /// The mistakes that a test below looks for.
-const TESTED: &[&str] = &["broken", "overshoot", "shared-edge", "spikes", "affine", "floor-affine"];
+const TESTED: &[&str] = &[
+    "broken",
+    "overshoot",
+    "shared-edge",
+    "spikes",
+    "affine",
+    "floor-affine",
+    "painter-red-first",
+    "painter-green-first",
+    "uncleared",
+    "behind",
+    "divide-first",
+    "tearing",
+];
 
 #[test]
 fn every_mistake_has_a_test_and_a_real_remedy() {
@@ -38,6 +51,9 @@ fn names_are_unique_and_look_says_something() {
         }
     }
 }
+
+const RED: Color = Color::rgb(225, 70, 60);
+const GREEN: Color = Color::rgb(80, 180, 90);
 
 fn draw(chapter: &str, name: &str) -> Framebuffer {
     let variant = variant(chapter, name);
@@ -130,4 +146,69 @@ fn three_ways_to_the_same_picture() {
     let correct = draw("ch05_perspective_correct", "correct");
     assert!(correct == draw("ch05_perspective_correct", "reciprocal"), "1/ω and V/ω give the same picture");
     assert!(correct != draw("ch05_perspective_correct", "affine"));
+}
+
+#[test]
+fn no_order_of_painting_is_right_for_triangles_that_pierce_each_other() {
+    let [right, red_first, green_first] =
+        ["intersecting", "painter-red-first", "painter-green-first"].map(|name| draw("ch06_z_buffer", name));
+    // On the left green is nearer, on the right red: of what both cover, each painter gets one side wrong.
+    let wrong = |picture: &Framebuffer, color: Color, is_side: &dyn Fn(i32) -> bool| {
+        count(&right, |x, y, now| is_side(x) && now == color && picture.get(x, y) != Some(color))
+    };
+    let (is_left, is_right) = (|x| x < 320, |x| x >= 320);
+    assert!(wrong(&red_first, RED, &is_right) > 1000);
+    assert_eq!(wrong(&red_first, GREEN, &is_left), 0);
+    assert!(wrong(&green_first, GREEN, &is_left) > 1000);
+    assert_eq!(wrong(&green_first, RED, &is_right), 0);
+}
+
+#[test]
+fn depths_of_the_last_frame_cut_a_hole() {
+    let green = |name| count(&draw("ch06_z_buffer", name), |_, _, color| color == GREEN);
+    let (whole, cut) = (green("cleared"), green("uncleared"));
+    assert!(whole > 39_000 && cut < whole * 2 / 3, "{cut} of {whole}");
+}
+
+#[test]
+fn colors_of_the_last_frames_stay() {
+    let lit = |name| count(&draw("ch09_pipeline", name), |_, _, color| color != Color::BLACK);
+    assert!(lit("uncleared") > 2 * lit("cleared"));
+    assert!(lit("cleared") > 10_000);
+}
+
+#[test]
+fn what_is_behind_the_eye_turns_up_in_the_sky() {
+    let floor = |name, above: bool| {
+        let background = Color::rgb(20, 24, 32);
+        count(&draw("ch07_clipping", name), |_, y, color| (y > 240) == above && color != background)
+    };
+    assert_eq!(floor("in-front", true), 0, "a floor is never above the horizon");
+    assert!(floor("behind", true) > 3000);
+    assert!(floor("in-front", false) > 50_000);
+}
+
+#[test]
+fn testing_after_the_divide_cuts_too_much() {
+    let lit = |name| count(&draw("ch08_cvv", name), |_, _, color| color != Color::BLACK);
+    assert!(lit("clip-first") > 100_000);
+    assert!(lit("divide-first") < 10_000);
+}
+
+#[test]
+fn one_buffer_shows_two_pictures() {
+    let [torn, old] = ["tearing", "presented"].map(|name| draw("ch09_pipeline", name));
+    let differs =
+        |above: bool| count(&torn, |x, y, color| (y >= 240) == above && old.get(x, y) != Some(color));
+    assert_eq!(differs(true), 0, "the upper half is the old picture");
+    assert!(differs(false) > 10_000, "the lower half is the new one");
+}
+
+#[test]
+fn pictures_that_are_claimed_to_be_equal_are() {
+    let clipped = draw("ch08_cvv", "clipped");
+    assert!(clipped == draw("ch08_cvv", "zero-to-one"));
+    assert!(clipped == draw("ch09_pipeline", "vbo"));
+    let [ccw, cw, none] = ["cull-ccw", "cull-cw", "cull-none"].map(|name| draw("ch09_pipeline", name));
+    assert!(ccw != cw && cw != none && none != ccw);
 }

@@ -137,6 +137,49 @@ fn zoom_and_compare() {
 }
 
 #[test]
+fn animations() {
+    let folder = folder("animation");
+    let run = |arguments: &[&str]| {
+        let program = env!("CARGO_BIN_EXE_ch09_pipeline");
+        Command::new(program).args(arguments).current_dir(&folder).output().expect("the program starts")
+    };
+    assert!(run(&["double-buffer", "--frame", "100", "--out", "x"]).status.success());
+    assert!(folder.join("x/double-buffer@100.png").is_file());
+    for name in ["a.gif", "a.png"] {
+        let output = run(&["double-buffer", "--animate", "--size", "16x12", "--out", name]);
+        assert_eq!(text(&output.stdout), format!("{name}\n"), "{}", text(&output.stderr));
+        assert!(output.stderr.is_empty(), "no progress bar where nobody looks");
+    }
+    let gif = std::fs::File::open(folder.join("a.gif")).expect("written");
+    let mut decoder = gif::Decoder::new(gif).expect("a GIF file");
+    let mut frames = 0;
+    while let Some(frame) = decoder.next_frame_info().expect("whole") {
+        assert_eq!(frame.delay, 5, "20 frames a second");
+        frames += 1;
+    }
+    assert_eq!(frames, 500);
+    let png = std::io::BufReader::new(std::fs::File::open(folder.join("a.png")).expect("written"));
+    let reader = png::Decoder::new(png).read_info().expect("a PNG file");
+    assert_eq!(reader.info().animation_control.map(|control| control.num_frames), Some(500));
+
+    for (arguments, reason) in [
+        (&["double-buffer", "--frame", "500"][..], "frames are 0 to 499"),
+        (&["vbo", "--frame", "0"], "'vbo' is one picture"),
+        (&["vbo", "--animate"], "cannot be animated"),
+        (&["double-buffer", "--animate", "--out", "b.bmp"], ".gif or a .png"),
+        (&["double-buffer", "--out", "b.gif"], "give --animate"),
+        (&["double-buffer", "--animate", "--frame", "3"], "--frame"),
+        (&["--all", "--animate"], "--animate"),
+    ] {
+        let output = run(arguments);
+        let stderr = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {stderr}");
+        assert!(stderr.starts_with("error: ") && stderr.contains(reason), "{arguments:?}: {stderr}");
+    }
+    assert_eq!(files(&folder), ["a.gif", "a.png", "x"]);
+}
+
+#[test]
 fn what_makes_no_sense_is_refused() {
     refused("variant", &["afine"], 2, "no variant 'afine'; it has: correct, affine");
     refused("option", &["--sise", "4x4"], 2, "--sise");
