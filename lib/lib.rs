@@ -12,7 +12,7 @@
 //!   ch3  real          the numbers that interpolation is written for
 //!   ch3  interpolate   barycentric weights, affine and perspective-correct interpolation
 //!   ch3  texture       texels and address modes
-//!   ch4  transform     projection, (ch8) frustum, viewport
+//!   ch4  transform     projection, (ch8) frustum, viewport, (ch10) matrices
 //!   ch6  depth         encodings, the test, the target: color and depth
 //!   ch7  clip          signed distance to a plane, Sutherland–Hodgman, clip volumes, the divide
 //!   ch9  cull          which side of a triangle is seen
@@ -23,6 +23,8 @@
 //!   ch9  raster        the door of all rasterizers; the book's scanline rasterizer
 //!   ch9  pipeline      RenderState and draw(): the stages in their order
 //!   ch9  swap_chain    front and back buffer, present
+//!   ch11 light         ambient, Lambert, Phong, Blinn–Phong
+//!   ch11 model         models (OBJ) and textures from files
 //!   …    program       what the eleven `main`s share; nothing above imports it
 //! ```
 //!
@@ -61,6 +63,9 @@ pub mod probe;
 pub mod raster;
 pub mod pipeline;
 pub mod swap_chain;
+pub mod light;
+#[cfg(feature = "files")]
+pub mod model;
 
 #[cfg(feature = "program")]
 pub mod program;

@@ -105,6 +105,12 @@ impl<A> Mesh<A> {
     }
     // ANCHOR_END: triangles
 
+    /// The same triangles with other records for their vertices.
+    #[must_use]
+    pub fn map<B>(&self, record: impl FnMut(&A) -> B) -> Mesh<B> {
+        Mesh { vertices: self.vertices.iter().map(record).collect(), indices: self.indices.clone() }
+    }
+
     /// The same triangles without shared vertices.
     #[must_use]
     pub fn to_unindexed(&self) -> Self

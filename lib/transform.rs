@@ -14,7 +14,7 @@
 //! assert_eq!((far.x, far.y), (20.0, 10.0));
 //! ```
 
-use glam::{DVec2, DVec3, DVec4};
+use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 
 use crate::Rect;
 
@@ -102,6 +102,43 @@ impl Frustum {
     }
     // ANCHOR_END: project
 
+    /// The same as a matrix (chapter 10): `clip_from_view`, a column vector on its right.
+    ///
+    /// ```text
+    ///   ┌ 2n/(r−l)     0       −(r+l)/(r−l)      0      ┐
+    ///   │    0      2n/(t−b)   −(t+b)/(t−b)      0      │
+    ///   │    0         0        (f+n)/(f−n)  2nf/(n−f)  │
+    ///   └    0         0             1           0      ┘
+    /// ```
+    ///
+    /// Left-handed camera space, z of NDC from −1 to 1. Source: book, section 10.1.
+    #[must_use]
+    pub fn matrix(&self) -> DMat4 {
+        let Self { left: l, right: r, bottom: b, top: t, near: n, far: f } = *self;
+        rows([
+            [2.0 * n / (r - l), 0.0, -(r + l) / (r - l), 0.0],
+            [0.0, 2.0 * n / (t - b), -(t + b) / (t - b), 0.0],
+            [0.0, 0.0, (f + n) / (f - n), 2.0 * n * f / (n - f)],
+            [0.0, 0.0, 1.0, 0.0],
+        ])
+    }
+
+    /// The symmetric frustum of a camera that sees `fov_y` radians from bottom to top; `aspect` = width : height.
+    ///
+    /// ```text
+    ///          ╱│ top = near · tan(fov_y / 2)
+    ///        ╱  │
+    ///      O ───┼──  fov_y / 2 on either side of the axis
+    ///        ╲  │
+    ///          ╲│    right = top · aspect
+    /// ```
+    #[must_use]
+    pub fn from_field_of_view(fov_y: f64, aspect: f64, near: f64, far: f64) -> Self {
+        let top = near * libm::tan(fov_y / 2.0);
+        let right = top * aspect;
+        Self { left: -right, right, bottom: -top, top, near, far }
+    }
+
     /// The same for 0 ≤ z ≤ ω, the depth range of Direct3D: z′ = f / (f − n) · (z − n).
     #[must_use]
     pub fn project_zero_to_one(&self, view: DVec3) -> DVec4 {
@@ -155,6 +192,140 @@ impl Viewport {
         )
     }
     // ANCHOR_END: viewport
+
+    /// The same as a matrix (chapter 10): `screen_from_ndc`.
+    ///
+    /// ```text
+    ///   ┌ (w−1)/2     0     0   x + (w−1)/2 ┐
+    ///   │    0     (h−1)/2  0   y + (h−1)/2 │      z stays as it is
+    ///   │    0        0     1        0      │
+    ///   └    0        0     0        1      ┘
+    /// ```
+    #[must_use]
+    pub fn matrix(&self) -> DMat4 {
+        let [x, y] = [(self.width - 1.0) / 2.0, (self.height - 1.0) / 2.0];
+        rows([
+            [x, 0.0, 0.0, self.x + x],
+            [0.0, y, 0.0, self.y + y],
+            [0.0, 0.0, 1.0, 0.0],
+            [0.0, 0.0, 0.0, 1.0],
+        ])
+    }
+}
+
+/// A matrix as it is drawn, row by row; glam keeps columns.
+fn rows(rows: [[f64; 4]; 4]) -> DMat4 {
+    DMat4::from_cols_array_2d(&rows).transpose()
+}
+
+// ANCHOR: matrices
+/// Moves by a vector. Book, section 10.3.
+///
+/// ```text
+///   ┌ 1 0 0 a ┐        points (ω = 1) move,
+///   │ 0 1 0 b │        directions (ω = 0) do not
+///   │ 0 0 1 c │
+///   └ 0 0 0 1 ┘
+/// ```
+#[must_use]
+pub fn translate(by: DVec3) -> DMat4 {
+    let [a, b, c] = by.to_array();
+    rows([[1.0, 0.0, 0.0, a], [0.0, 1.0, 0.0, b], [0.0, 0.0, 1.0, c], [0.0, 0.0, 0.0, 1.0]])
+}
+
+/// Scales along the three axes, away from the origin. Book, section 10.2.
+///
+/// ```text
+///   ┌ a 0 0 0 ┐
+///   │ 0 b 0 0 │
+///   │ 0 0 c 0 │
+///   └ 0 0 0 1 ┘
+/// ```
+#[must_use]
+pub fn scale(by: DVec3) -> DMat4 {
+    let [a, b, c] = by.to_array();
+    rows([[a, 0.0, 0.0, 0.0], [0.0, b, 0.0, 0.0], [0.0, 0.0, c, 0.0], [0.0, 0.0, 0.0, 1.0]])
+}
+
+/// Turns about the z axis, +x towards +y: counter-clockwise on the screen. Radians. The book's `RotateZ`, section 10.4.
+///
+/// ```text
+///   ┌ cos −sin 0 0 ┐        y
+///   │ sin  cos 0 0 │        │ ╮
+///   │  0    0  1 0 │        └──┴ x
+///   └  0    0  0 1 ┘
+/// ```
+#[must_use]
+pub fn rotate_x_to_y(angle: f64) -> DMat4 {
+    let (s, c) = (libm::sin(angle), libm::cos(angle));
+    rows([[c, -s, 0.0, 0.0], [s, c, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]])
+}
+
+/// Turns about the x axis, +z towards +y: what is farther away comes up. Radians. The book's `RotateX`, section 10.4.
+///
+/// ```text
+///   ┌ 1   0    0  0 ┐        y
+///   │ 0  cos  sin 0 │        │ ╮
+///   │ 0 −sin  cos 0 │        └──┴ z
+///   └ 0   0    0  1 ┘
+/// ```
+#[must_use]
+pub fn rotate_z_to_y(angle: f64) -> DMat4 {
+    let (s, c) = (libm::sin(angle), libm::cos(angle));
+    rows([[1.0, 0.0, 0.0, 0.0], [0.0, c, s, 0.0], [0.0, -s, c, 0.0], [0.0, 0.0, 0.0, 1.0]])
+}
+
+/// Turns about the y axis, +x towards +z: what is on the right goes away from us. Radians. The book's `RotateY`,
+/// section 10.4.
+///
+/// ```text
+///   ┌ cos  0 −sin 0 ┐        z
+///   │  0   1   0  0 │        │ ╮
+///   │ sin  0  cos 0 │        └──┴ x
+///   └  0   0   0  1 ┘
+/// ```
+#[must_use]
+pub fn rotate_x_to_z(angle: f64) -> DMat4 {
+    let (s, c) = (libm::sin(angle), libm::cos(angle));
+    rows([[c, 0.0, -s, 0.0], [0.0, 1.0, 0.0, 0.0], [s, 0.0, c, 0.0], [0.0, 0.0, 0.0, 1.0]])
+}
+
+/// A transformation as seen from a point: T(p) · M · T(−p). A rotation then turns about `pivot`, a scale grows away from
+/// it. Book, section 10.5.
+#[must_use]
+pub fn about(pivot: DVec3, transformation: DMat4) -> DMat4 {
+    translate(pivot) * transformation * translate(-pivot)
+}
+
+/// `view_from_world` of a camera at `eye` that looks towards `target`, with `up` upwards in the picture.
+///
+/// ```text
+///   ┌ right.x    right.y    right.z    −right·eye   ┐     forward = target − eye     (the camera's +z)
+///   │ up.x       up.y       up.z       −up·eye      │     right   = up × forward     (+x)
+///   │ forward.x  forward.y  forward.z  −forward·eye │     up      = forward × right  (+y)
+///   └    0          0          0           1        ┘     each of length 1
+/// ```
+///
+/// The eye is subtracted, not the target: the eye becomes the origin. Left-handed. Not finite if `up` points along the
+/// line of sight. Source: second and fourth note (world to view space).
+#[must_use]
+pub fn look_at(eye: DVec3, target: DVec3, up: DVec3) -> DMat4 {
+    let forward = (target - eye).normalize();
+    let right = up.cross(forward).normalize();
+    let up = forward.cross(right);
+    let row = |axis: DVec3| axis.extend(-axis.dot(eye)).to_array();
+    rows([row(right), row(up), row(forward), [0.0, 0.0, 0.0, 1.0]])
+}
+// ANCHOR_END: matrices
+
+/// The matrix for normals that belongs to a matrix for points: the inverse of its transpose.
+///
+/// A normal n stands upright on every direction t of a surface, n·t = 0. When t becomes M t, n must become
+/// (M⁻¹)ᵀ n, since ((M⁻¹)ᵀ n)·(M t) = n·(M⁻¹ M t) = n·t. For rotations that is M itself. Not finite if M flattens
+/// space. Source: fourth note, transformation of normals.
+#[must_use]
+pub fn normal_matrix(world_from_model: DMat4) -> DMat3 {
+    DMat3::from_mat4(world_from_model).inverse().transpose()
 }
 
 #[cfg(test)]
@@ -226,5 +397,93 @@ mod tests {
             let tiny = Viewport::fitting(Rect::sized(width, height), 4.0 / 3.0);
             assert!(tiny.width >= 1.0 && tiny.height >= 1.0 && tiny.x >= 0.0 && tiny.y >= 0.0, "{tiny:?}");
         }
+    }
+
+    fn apply(matrix: DMat4, point: DVec3) -> DVec3 {
+        perspective_divide(matrix * point.extend(1.0))
+    }
+
+    fn assert_near(a: DVec3, b: DVec3) {
+        assert!((a - b).length() < 1e-12, "{a} is not {b}");
+    }
+
+    #[test]
+    fn matrices_by_hand() {
+        let p = dvec3(1.0, 2.0, 3.0);
+        assert_eq!(apply(translate(dvec3(10.0, 20.0, 30.0)), p), dvec3(11.0, 22.0, 33.0));
+        assert_eq!(
+            (translate(dvec3(9.0, 9.0, 9.0)) * p.extend(0.0)).truncate(),
+            p,
+            "a direction does not move"
+        );
+        assert_eq!(apply(scale(dvec3(2.0, 3.0, -4.0)), p), dvec3(2.0, 6.0, -12.0));
+        // A quarter turn each.
+        let quarter = std::f64::consts::FRAC_PI_2;
+        assert_near(apply(rotate_x_to_y(quarter), p), dvec3(-2.0, 1.0, 3.0));
+        assert_near(apply(rotate_z_to_y(quarter), p), dvec3(1.0, 3.0, -2.0));
+        assert_near(apply(rotate_x_to_z(quarter), p), dvec3(-3.0, 2.0, 1.0));
+        // About a point, which stays where it is.
+        let pivot = dvec3(1.0, 1.0, 0.0);
+        let turn = about(pivot, rotate_x_to_y(quarter));
+        assert_near(apply(turn, pivot), pivot);
+        assert_near(apply(turn, dvec3(2.0, 1.0, 0.0)), dvec3(1.0, 2.0, 0.0));
+    }
+
+    #[test]
+    fn matrices_by_glam() {
+        let angle = 0.7;
+        let by = dvec3(1.0, -2.0, 0.5);
+        assert_eq!(translate(by), DMat4::from_translation(by));
+        assert_eq!(scale(by), DMat4::from_scale(by));
+        // glam turns y towards z and z towards x: two of the book's three turn the other way.
+        assert!(rotate_x_to_y(angle).abs_diff_eq(DMat4::from_rotation_z(angle), 1e-15));
+        assert!(rotate_z_to_y(angle).abs_diff_eq(DMat4::from_rotation_x(-angle), 1e-15));
+        assert!(rotate_x_to_z(angle).abs_diff_eq(DMat4::from_rotation_y(-angle), 1e-15));
+
+        let (eye, target, up) = (dvec3(3.0, 2.0, -5.0), dvec3(-1.0, 0.5, 4.0), dvec3(0.2, 1.0, 0.1));
+        assert!(
+            look_at(eye, target, up)
+                .abs_diff_eq(glam::dcamera::lh::view::look_at_mat4(eye, target, up), 1e-12)
+        );
+        let camera = Frustum::from_field_of_view(1.1, 1.6, 0.5, 30.0);
+        let glams = glam::dcamera::lh::proj::opengl::perspective(1.1, 1.6, 0.5, 30.0);
+        assert!(camera.matrix().abs_diff_eq(glams, 1e-12));
+    }
+
+    #[test]
+    fn projection_by_formula_and_by_matrix() {
+        for point in [dvec3(0.3, -0.7, 3.0), dvec3(5.0, 4.0, 9.0), dvec3(-2.0, 1.0, -1.0)] {
+            assert!((ASKEW.matrix() * point.extend(1.0) - ASKEW.project(point)).length() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn viewport_by_formula_and_by_matrix() {
+        let viewport = Viewport { x: 7.0, y: -3.0, width: 200.0, height: 100.0 };
+        let ndc = dvec3(0.25, -0.5, 0.75);
+        assert!((apply(viewport.matrix(), ndc).truncate() - viewport.pixel_corners(ndc)).length() < 1e-12);
+    }
+
+    #[test]
+    fn the_eye_becomes_the_origin_and_the_target_lies_ahead() {
+        let (eye, target) = (dvec3(3.0, 2.0, -5.0), dvec3(-1.0, 0.5, 4.0));
+        let view_from_world = look_at(eye, target, DVec3::Y);
+        assert_near(apply(view_from_world, eye), DVec3::ZERO);
+        assert_near(apply(view_from_world, target), dvec3(0.0, 0.0, eye.distance(target)));
+        assert!(apply(view_from_world, target + DVec3::Y).y > 0.0, "up is up");
+        let right = apply(view_from_world, target + dvec3(1.0, 0.0, 0.0));
+        assert!(right.x > 0.0, "seen along +z, +x is on the right");
+    }
+
+    #[test]
+    fn normals_stay_upright() {
+        // A slope under a scale of 1 : 4: the model matrix would tilt the normal the wrong way.
+        let world_from_model =
+            translate(dvec3(5.0, 6.0, 7.0)) * scale(dvec3(1.0, 4.0, 2.0)) * rotate_x_to_y(0.4);
+        let (tangent, normal) = (dvec3(1.0, 1.0, 0.0), dvec3(-1.0, 1.0, 0.0));
+        let new_tangent = (world_from_model * tangent.extend(0.0)).truncate();
+        assert!((normal_matrix(world_from_model) * normal).dot(new_tangent).abs() < 1e-12);
+        let wrong = (world_from_model * normal.extend(0.0)).truncate();
+        assert!(wrong.dot(new_tangent).abs() > 1.0);
     }
 }

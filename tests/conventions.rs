@@ -104,7 +104,7 @@ fn arithmetic_is_not_fused() {
 }
 
 #[test]
-fn the_default_of_every_option_is_the_right_one() {
+fn the_default_of_every_option() {
     assert_eq!(StepAxis::default(), StepAxis::Longer);
     assert_eq!(EdgeWalk::default(), EdgeWalk::Clamped);
     assert_eq!(StepLimit::default(), StepLimit::Edges, "the book's remedy");

@@ -22,6 +22,7 @@
 
 mod animation;
 mod arguments;
+pub mod assets;
 mod chapter;
 mod failure;
 mod output;

@@ -98,6 +98,11 @@ fn encode(picture: &Framebuffer, format: ImageFormat) -> Result<Vec<u8>, image::
     Ok(bytes.into_inner())
 }
 
+/// A picture as a PNG file.
+pub(super) fn png_bytes(picture: &Framebuffer) -> Result<Vec<u8>, image::ImageError> {
+    encode(picture, ImageFormat::Png)
+}
+
 /// The channels of all pixels, the highest row first.
 pub(super) fn rgb_bytes(picture: &Framebuffer) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(picture.width() as usize * picture.height() as usize * 3);

@@ -1,0 +1,213 @@
+//! Chapter 11: light. How bright a surface is at a point, from its normal, the direction to the light, and the eye.
+//!
+//! Called by fragment shaders (or, for Gouraud shading, by vertex shaders); all vectors are of length 1 and in one
+//! space, whichever that is. Everything is written for any number type.
+//!
+//! ```
+//! use rasterbook::light::{dot, lambert, normalize};
+//!
+//! let normal = normalize([0.0, 2.0, 0.0]);
+//! let to_light = normalize([0.0, 1.0, -1.0]);
+//! assert!((lambert(normal, to_light) - 0.5_f64.sqrt()).abs() < 1e-15); // 45°
+//! assert_eq!(lambert(normal, [0.0, -1.0, 0.0]), 0.0); // from below: no light
+//! assert_eq!(dot(normal, normal), 1.0);
+//! ```
+
+use std::array::from_fn;
+
+use crate::real::Real;
+
+/// A vector in any space.
+type Vector<R> = [R; 3];
+
+/// a · b.
+#[must_use]
+pub fn dot<R: Real>(a: Vector<R>, b: Vector<R>) -> R {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// The vector of length 1 in the same direction; not finite for the zero vector.
+#[must_use]
+pub fn normalize<R: Real>(v: Vector<R>) -> Vector<R> {
+    let length = dot(v, v).sqrt();
+    v.map(|component| component / length)
+}
+
+/// The direction in which light from the direction `to_light` leaves a mirror: 2 (n·l) n − l.
+///
+/// ```text
+///    to_light    n     reflected
+///          ╲     │     ╱
+///            ╲ θ │ θ ╱
+///              ╲ │ ╱
+///        ────────┴────────
+/// ```
+///
+/// Source: fourth note, Phong model.
+#[must_use]
+pub fn reflect<R: Real>(normal: Vector<R>, to_light: Vector<R>) -> Vector<R> {
+    let twice = R::of(2.0) * dot(normal, to_light);
+    from_fn(|i| twice * normal[i] - to_light[i])
+}
+
+// ANCHOR: lambert
+/// Diffuse light: max(0, n·l), the cosine of the angle under which the light comes in. Book, section 11.1.
+///
+/// ```text
+///    light straight from above: much of it       aslant: the same light on more surface
+///          │ │ │ │                                       ╲ ╲ ╲ ╲
+///          ▼ ▼ ▼ ▼                                         ╲ ╲ ╲ ╲
+///       ───────────────                             ────────────────────
+/// ```
+#[must_use]
+pub fn lambert<R: Real>(normal: Vector<R>, to_light: Vector<R>) -> R {
+    dot(normal, to_light).max(R::of(0.0))
+}
+// ANCHOR_END: lambert
+
+/// How much of a point light's intensity arrives at a distance: 1 / r². Source: fourth note, Lambert model.
+#[must_use]
+pub fn attenuation<R: Real>(distance: R) -> R {
+    R::of(1.0) / (distance * distance)
+}
+
+// ANCHOR: specular
+/// Phong's highlight: max(0, r·v)^p, r the reflected light, v the direction to the eye. Large exponents make it small.
+///
+/// Where the angle between r and v passes 90° the highlight is cut off, which shows at small exponents. Source: fourth
+/// note, Phong model.
+#[must_use]
+pub fn phong<R: Real>(normal: Vector<R>, to_light: Vector<R>, to_eye: Vector<R>, exponent: f64) -> R {
+    let cosine = dot(reflect(normal, to_light), to_eye).max(R::of(0.0));
+    cosine.map(|cosine| libm::pow(cosine, exponent))
+}
+
+/// Blinn and Phong's highlight: max(0, n·h)^p, h half-way between light and eye. It has no cut-off while both are above
+/// the surface. Source: fourth note, Blinn–Phong model.
+#[must_use]
+pub fn blinn_phong<R: Real>(normal: Vector<R>, to_light: Vector<R>, to_eye: Vector<R>, exponent: f64) -> R {
+    let half = normalize(from_fn(|i| to_light[i] + to_eye[i]));
+    let cosine = dot(normal, half).max(R::of(0.0));
+    cosine.map(|cosine| libm::pow(cosine, exponent))
+}
+// ANCHOR_END: specular
+
+/// Which highlight a surface has.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Highlight {
+    /// None: a dull surface.
+    #[default]
+    None,
+    /// By the reflected ray.
+    Phong,
+    /// By the half vector.
+    BlinnPhong,
+}
+
+/// How a surface answers to light: the sum of three terms. Source: fourth note.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Material {
+    /// The part of the ambient light that comes back, which is there without any direction.
+    pub ambient: f64,
+    /// The part of the diffuse light.
+    pub diffuse: f64,
+    /// The part of the highlight, which has the light's color and not the surface's.
+    pub specular: f64,
+    /// The exponent of the highlight.
+    pub exponent: f64,
+    /// Which highlight.
+    pub highlight: Highlight,
+}
+
+impl Material {
+    // ANCHOR: shade
+    /// The color (0..=255) of a surface of color `surface` under white light.
+    #[must_use]
+    pub fn shade<R: Real>(
+        &self,
+        surface: [R; 3],
+        normal: Vector<R>,
+        to_light: Vector<R>,
+        to_eye: Vector<R>,
+    ) -> [R; 3] {
+        let diffuse = lambert(normal, to_light);
+        let highlight = match self.highlight {
+            Highlight::None => R::of(0.0),
+            Highlight::Phong => phong(normal, to_light, to_eye, self.exponent),
+            Highlight::BlinnPhong => blinn_phong(normal, to_light, to_eye, self.exponent),
+        };
+        // No highlight on the side that is turned away from the light.
+        let lit = R::of(0.0).is_less(dot(normal, to_light));
+        let highlight = R::select(lit, highlight, R::of(0.0));
+
+        let body = R::of(self.ambient) + R::of(self.diffuse) * diffuse;
+        let gloss = R::of(self.specular * 255.0) * highlight;
+        surface.map(|channel| (body * channel + gloss).min(R::of(255.0)))
+    }
+    // ANCHOR_END: shade
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn direction() -> impl Strategy<Value = [f64; 3]> {
+        prop::array::uniform3(-1.0..1.0).prop_filter("too short", |v| dot(*v, *v) > 0.01).prop_map(normalize)
+    }
+
+    const WHITE: [f64; 3] = [255.0; 3];
+
+    #[test]
+    fn light_from_straight_above_and_from_the_side() {
+        let up = [0.0, 1.0, 0.0];
+        let material =
+            Material { ambient: 0.2, diffuse: 0.6, specular: 0.0, exponent: 1.0, highlight: Highlight::None };
+        let gray = |to_light| material.shade(WHITE, up, to_light, up)[0] / 255.0;
+        assert!((gray(up) - 0.8).abs() < 1e-12);
+        assert!((gray([1.0, 0.0, 0.0]) - 0.2).abs() < 1e-12, "ambient alone");
+        assert!((gray([0.6, 0.8, 0.0]) - 0.68).abs() < 1e-12);
+        assert_eq!(attenuation(2.0), 0.25);
+    }
+
+    #[test]
+    fn phong_is_cut_off_where_blinn_phong_goes_on() {
+        // Light and eye on the same side, both low: the reflected ray is more than 90° from the eye.
+        let (up, low) = ([0.0, 1.0, 0.0], normalize([1.0, 0.3, 0.0]));
+        assert_eq!(phong(up, low, low, 2.0), 0.0);
+        assert!(blinn_phong(up, low, low, 2.0) > 0.05);
+    }
+
+    proptest! {
+        #[test]
+        fn reflection_mirrors_at_the_normal(n in direction(), l in direction()) {
+            let r = reflect(n, l);
+            prop_assert!((dot(r, r) - 1.0).abs() < 1e-12, "as long as before");
+            prop_assert!((dot(r, n) - dot(l, n)).abs() < 1e-12, "the same angle to the normal");
+            let back = reflect(n, r);
+            prop_assert!((0..3).all(|i| (back[i] - l[i]).abs() < 1e-12), "twice is nothing");
+        }
+
+        #[test]
+        fn the_half_vector_has_half_the_angle(n in direction(), l in direction(), v in direction()) {
+            let h = normalize(from_fn(|i| l[i] + v[i]));
+            prop_assume!(h.iter().all(|c: &f64| c.is_finite()));
+            prop_assert!((dot(h, l) - dot(h, v)).abs() < 1e-9);
+            // Where both agree on the highlight's middle: the eye in the mirror's direction.
+            prop_assume!(dot(n, l) > 0.0);
+            let mirrored = reflect(n, l);
+            prop_assert!((phong(n, l, mirrored, 8.0) - 1.0).abs() < 1e-6);
+            prop_assert!((blinn_phong(n, l, mirrored, 8.0) - 1.0).abs() < 1e-6);
+        }
+
+        #[test]
+        fn colors_stay_in_range(n in direction(), l in direction(), v in direction(), exponent in 1.0..100.0) {
+            for highlight in [Highlight::None, Highlight::Phong, Highlight::BlinnPhong] {
+                let material = Material { ambient: 0.3, diffuse: 0.9, specular: 0.8, exponent, highlight };
+                for channel in material.shade(WHITE, n, l, v) {
+                    prop_assert!((0.0..=255.0).contains(&channel));
+                }
+            }
+        }
+    }
+}
