@@ -7,9 +7,9 @@
 
 use std::process::ExitCode;
 
-use glam::{DVec2, dvec2};
+use glam::{DVec2, DVec3, dvec2};
 use rasterbook::line::{StepAxis, dda};
-use rasterbook::program::{Chapter, Variant};
+use rasterbook::program::{Chapter, Subject, Variant};
 use rasterbook::{Color, Framebuffer};
 
 pub(crate) const CHAPTER: Chapter = Chapter {
@@ -29,6 +29,13 @@ pub(crate) const CHAPTER: Chapter = Chapter {
         .source("section 2.1, Figure 2-2")
         .size(480, 480)
         .mended_by("star"),
+        Variant::of_model_in_plane(
+            "wireframe",
+            wireframe,
+            ["pawn.obj", "wood.png"],
+            "a model as lines alone: every edge of every triangle, front and back",
+        )
+        .size(480, 480),
     ],
 };
 
@@ -81,6 +88,22 @@ fn rays(framebuffer: &mut Framebuffer, axis: StepAxis) {
     }
 }
 // ANCHOR_END: rays
+
+// ANCHOR: wireframe
+/// The edges of a model's triangles, seen along z: of each corner x and y are enough.
+fn wireframe(framebuffer: &mut Framebuffer, subject: &Subject) {
+    let on_screen = |point: DVec3| dvec2(240.0, 240.0) + point.truncate() * 135.0;
+    for part in &subject.model.parts {
+        let vertices = part.mesh.vertices();
+        for triangle in part.mesh.triangles() {
+            let [a, b, c] = triangle.map(|index| on_screen(vertices[index].position));
+            for (start, end) in [(a, b), (b, c), (c, a)] {
+                draw_line(framebuffer, start, end, StepAxis::Longer, Color::rgb(120, 200, 255));
+            }
+        }
+    }
+}
+// ANCHOR_END: wireframe
 
 fn main() -> ExitCode {
     CHAPTER.main()

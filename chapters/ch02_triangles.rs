@@ -8,8 +8,8 @@
 
 use std::process::ExitCode;
 
-use glam::DVec2;
-use rasterbook::program::{Chapter, Variant, picture};
+use glam::{DVec2, DVec3, dvec2};
+use rasterbook::program::{Chapter, Subject, Variant, picture};
 use rasterbook::scanline::{Corner, EdgeWalk, Half, Span, Walk, split};
 use rasterbook::{Color, Framebuffer, Rect};
 
@@ -45,6 +45,8 @@ pub(crate) const CHAPTER: Chapter = Chapter {
             "six triangles added up: yellow and red pixels are drawn twice or more, along every seam",
         )
         .unmended(),
+        Variant::of_model_in_plane("facets", facets, ["pawn.obj", "wood.png"], "a model of flat triangles, each as bright as it faces us; those that turn their back are left out")
+            .size(480, 480),
     ],
 };
 
@@ -174,6 +176,33 @@ fn one_more(color: Color) -> Color {
     }
 }
 // ANCHOR_END: shared_edge
+
+// ANCHOR: facets
+/// A model's triangles, seen along z, from far to near; each in one gray.
+fn facets(framebuffer: &mut Framebuffer, subject: &Subject) {
+    let mut triangles: Vec<[DVec3; 3]> = Vec::new();
+    for part in &subject.model.parts {
+        let vertices = part.mesh.vertices();
+        triangles
+            .extend(part.mesh.triangles().map(|triangle| triangle.map(|index| vertices[index].position)));
+    }
+    triangles.sort_by(|a, b| farness(b).total_cmp(&farness(a)));
+
+    for [a, b, c] in triangles {
+        // The part of a face's normal that points to us: the cosine of the angle at which we see it.
+        let facing = -(c - a).cross(b - a).normalize_or_zero().z;
+        if facing > 0.0 {
+            let corners = [a, b, c].map(|point| dvec2(240.0, 240.0) + point.truncate() * 135.0);
+            fill(framebuffer, corners, Walk::default(), Color::gray((40.0 + 215.0 * facing) as u8));
+        }
+    }
+}
+
+/// The distance of a triangle's middle, times three.
+fn farness(triangle: &[DVec3; 3]) -> f64 {
+    triangle.iter().map(|corner| corner.z).sum()
+}
+// ANCHOR_END: facets
 
 fn main() -> ExitCode {
     CHAPTER.main()

@@ -23,7 +23,7 @@ pub(crate) const CHAPTER: Chapter = Chapter {
     name: "ch08_cvv",
     question: "What of the world gets into the picture?",
     variants: &[
-        Variant::new("clipped", clipped, "a triangle that is larger than the view: cut off at the borders of the picture, and in front at the near plane")
+        Variant::new("clipped", clipped, "a triangle that is larger than the view, one corner nearer than the near plane: cut off at the borders of the picture")
             .source("section 8.3, Figure 8-9"),
         Variant::new("ndc", ndc, "a triangle that fits: the frustum's borders become the borders of the picture").source("section 8.2, Figure 8-6"),
         Variant::new("planes", planes, "the polygon before clipping and after each plane: left, right, bottom, top, near, far; the square is the view")

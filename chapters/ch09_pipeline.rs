@@ -9,39 +9,37 @@
 use std::process::ExitCode;
 
 use glam::{DVec3, dvec3};
+use rasterbook::Color;
 use rasterbook::area::Winding;
 use rasterbook::clip::ClipVertex;
 use rasterbook::cull::CullMode;
-use rasterbook::depth::Target;
 use rasterbook::merge::{Blend, Merge};
 use rasterbook::mesh::{Mesh, MeshError};
-use rasterbook::pipeline::{RenderState, draw};
-use rasterbook::probe::Silent;
-use rasterbook::program::{Animation, Chapter, Variant};
-use rasterbook::raster::Scanline;
+use rasterbook::pipeline::RenderState;
+use rasterbook::program::{Animation, Canvas, Chapter, Variant};
 use rasterbook::real::Real;
 use rasterbook::shader::{Shaded, Shader};
 use rasterbook::swap_chain::SwapChain;
 use rasterbook::texture::{AddressMode, Texture};
-use rasterbook::transform::{Frustum, Viewport};
-use rasterbook::{Color, Framebuffer};
+use rasterbook::transform::Frustum;
 
 pub(crate) const CHAPTER: Chapter = Chapter {
     name: "ch09_pipeline",
     question: "How is all this put together?",
     variants: &[
-        Variant::new("vbo", vbo, "chapter 8's triangle from a vertex buffer, through the whole pipeline: the same picture").source("section 9.2"),
-        Variant::new("cull-ccw", cull_ccw, "two triangles, the back culled: the counter-clockwise one is left").source("section 9.3"),
-        Variant::new("cull-cw", cull_cw, "the same, the front culled: the clockwise one is left").source("section 9.3"),
-        Variant::new("cull-none", cull_none, "the same, nothing culled: both").source("section 9.3"),
-        Variant::new("uncleared", uncleared, "five frames of a moving triangle, nothing cleared between them: the old ones stay").source("section 9.4.1, Figure 9-8").mended_by("cleared"),
-        Variant::new("cleared", cleared, "the fifth of these frames, color and depth cleared before it").source("section 9.4.1"),
-        Variant::animated("double-buffer", double_buffer, FLIGHT, "the near plane comes closer by 0.01 a frame, and the triangle shrinks; no frame is seen half drawn")
+        Variant::with_pipeline("vbo", vbo, "chapter 8's triangle from a vertex buffer, through the whole pipeline: the same picture").source("section 9.2"),
+        Variant::with_pipeline("cull-ccw", cull_ccw, "two triangles, the back culled: the counter-clockwise one is left").source("section 9.3"),
+        Variant::with_pipeline("cull-cw", cull_cw, "the same with clockwise as the front, the back culled: the clockwise one is left").source("section 9.3"),
+        Variant::with_pipeline("cull-none", cull_none, "the same, nothing culled: both").source("section 9.3"),
+        Variant::with_pipeline("uncleared", uncleared, "five frames of a moving triangle, nothing cleared between them: the old ones stay").source("section 9.4.1, Figure 9-8").mended_by("cleared"),
+        Variant::with_pipeline("cleared", cleared, "the fifth of these frames, color and depth cleared before it").source("section 9.4.1"),
+        Variant::with_pipeline("double-buffer", double_buffer, "the near plane comes closer by 0.01 a frame, and the triangle shrinks; no frame is seen half drawn")
+            .animated(FLIGHT)
             .source("section 9.4.2"),
-        Variant::new("tearing", tearing, "one buffer, seen while it is drawn: the new picture in the lower half, the old one above it").source("section 9.4.2").mended_by("presented"),
-        Variant::new("presented", presented, "two buffers, seen at the same moment: the old picture, whole").source("section 9.4.2, Figure 9-9"),
-        Variant::new("indexed", indexed, "a hill of 49 vertices and 72 triangles; each vertex is shaded once, and up to six triangles share it"),
-        Variant::new("blended", blended, "translucent triangles over a checkered wall: source-over on the left, where order matters; additive on the right"),
+        Variant::with_pipeline("tearing", tearing, "one buffer, seen while it is drawn: the new picture in the lower half, the old one above it").source("section 9.4.2").mended_by("presented"),
+        Variant::with_pipeline("presented", presented, "two buffers, seen at the same moment: the old picture, whole").source("section 9.4.2, Figure 9-9"),
+        Variant::with_pipeline("indexed", indexed, "a hill of 49 vertices and 72 triangles; each vertex is shaded once, and up to six triangles share it"),
+        Variant::with_pipeline("blended", blended, "translucent triangles over a checkered wall: source-over on the left, where order matters; additive on the right"),
     ],
 };
 
@@ -97,31 +95,6 @@ fn with_clockwise_triangle() -> Vec<Attributes> {
     vertices
 }
 
-// ANCHOR: render
-/// Clears a target and draws one mesh into it, its 4 : 3 view fitted into the picture.
-fn render<S: Shader<N>, const N: usize>(
-    target: &mut Target,
-    mesh: &Mesh<S::Attributes>,
-    shader: &S,
-    state: RenderState,
-) {
-    target.clear(state.clear_color, state.clear_depth);
-    draw_more(target, mesh, shader, state);
-}
-
-/// The same without clearing.
-fn draw_more<S: Shader<N>, const N: usize>(
-    target: &mut Target,
-    mesh: &Mesh<S::Attributes>,
-    shader: &S,
-    state: RenderState,
-) {
-    let viewport = Viewport::fitting(target.color.rect(), 4.0 / 3.0);
-    let state = RenderState { viewport: Some(viewport), ..state };
-    draw(mesh, shader, &state, &Scanline, target, &Silent);
-}
-// ANCHOR_END: render
-
 fn book_texture(view: Frustum) -> Textured {
     Textured { view, texture: Texture::book() }
 }
@@ -131,35 +104,36 @@ fn triangles<A>(mesh: Result<Mesh<A>, MeshError>) -> Mesh<A> {
     mesh.unwrap_or_else(|error| unreachable!("{error}"))
 }
 
-fn textured_picture(framebuffer: &mut Framebuffer, vertices: Vec<Attributes>, state: RenderState) {
-    let mut target = Target::new(framebuffer.width(), framebuffer.height());
-    render(&mut target, &triangles(Mesh::unindexed(vertices)), &book_texture(VIEW), state);
-    *framebuffer = target.color;
+// ANCHOR: render
+/// Clears the canvas, and sends triangles through the pipeline.
+fn textured_picture(canvas: &mut Canvas, vertices: Vec<Attributes>, state: &RenderState) {
+    canvas.render(&triangles(Mesh::unindexed(vertices)), &book_texture(VIEW), state);
 }
+// ANCHOR_END: render
 
 /// One triangle, from a vertex buffer.
-fn vbo(framebuffer: &mut Framebuffer) {
-    textured_picture(framebuffer, large_triangle(), RenderState::default());
+fn vbo(canvas: &mut Canvas) {
+    textured_picture(canvas, large_triangle(), &RenderState::default());
 }
 
 // ANCHOR: culling
 /// The front of a triangle runs counter-clockwise; the back is culled.
-fn cull_ccw(framebuffer: &mut Framebuffer) {
+fn cull_ccw(canvas: &mut Canvas) {
     let state =
         RenderState { cull: CullMode::Back, front_face: Winding::CounterClockwise, ..RenderState::default() };
-    textured_picture(framebuffer, with_clockwise_triangle(), state);
+    textured_picture(canvas, with_clockwise_triangle(), &state);
 }
 
 /// Clockwise ones are kept.
-fn cull_cw(framebuffer: &mut Framebuffer) {
+fn cull_cw(canvas: &mut Canvas) {
     let state =
         RenderState { cull: CullMode::Back, front_face: Winding::Clockwise, ..RenderState::default() };
-    textured_picture(framebuffer, with_clockwise_triangle(), state);
+    textured_picture(canvas, with_clockwise_triangle(), &state);
 }
 
 /// Both are kept.
-fn cull_none(framebuffer: &mut Framebuffer) {
-    textured_picture(framebuffer, with_clockwise_triangle(), RenderState::default());
+fn cull_none(canvas: &mut Canvas) {
+    textured_picture(canvas, with_clockwise_triangle(), &RenderState::default());
 }
 // ANCHOR_END: culling
 
@@ -170,69 +144,72 @@ fn view_of(frame: u32) -> Frustum {
     Frustum { near, ..VIEW }
 }
 
-/// One frame: drawn into the back buffer, then presented.
-fn double_buffer(framebuffer: &mut Framebuffer, frame: u32) {
-    let mut chain = SwapChain::new(framebuffer.width(), framebuffer.height());
-    draw_frame(&mut chain.back, frame);
-    chain.present();
-    *framebuffer = chain.into_front();
+/// One frame: drawn into the back buffer, then presented. The picture is what the screen shows.
+fn double_buffer(canvas: &mut Canvas) {
+    let mut screen = screen_for(canvas);
+    draw_frame(canvas, canvas.frame);
+    screen.present(&mut canvas.target.color);
+    canvas.target.color = screen.front().clone();
 }
 
-fn draw_frame(target: &mut Target, frame: u32) {
+fn screen_for(canvas: &Canvas) -> SwapChain {
+    SwapChain::new(canvas.target.color.width(), canvas.target.color.height())
+}
+
+fn draw_frame(canvas: &mut Canvas, frame: u32) {
     let state = RenderState { cull: CullMode::Back, ..RenderState::default() };
-    render(target, &triangles(Mesh::unindexed(large_triangle())), &book_texture(view_of(frame)), state);
+    canvas.render(&triangles(Mesh::unindexed(large_triangle())), &book_texture(view_of(frame)), &state);
 }
 // ANCHOR_END: frames
 
 // ANCHOR: uncleared
 /// Five frames of a triangle that moves to the right, drawn into one target.
-fn five_frames(framebuffer: &mut Framebuffer, clear: bool) {
-    let mut target = Target::new(framebuffer.width(), framebuffer.height());
+fn five_frames(canvas: &mut Canvas, clear: bool) {
+    let state = RenderState::default();
+    canvas.clear(&state);
     for frame in 0..5 {
         if clear {
-            target.clear(Color::BLACK, 1.0);
+            canvas.clear(&state);
         }
         let (x, fade) = (30.0 + 90.0 * f64::from(frame), 50.0 * f64::from(frame));
         let corners = vec![[x, 90.0], [x + 190.0, 150.0], [x + 60.0, 400.0]];
         let shader = Flat { color: [40.0 + fade, 90.0 + fade / 3.0, 240.0 - fade], opacity: 1.0 };
-        draw_more(&mut target, &triangles(Mesh::unindexed(corners)), &shader, RenderState::default());
+        canvas.draw(&triangles(Mesh::unindexed(corners)), &shader, &state);
     }
-    *framebuffer = target.color;
 }
 
 /// Nothing is cleared: the old frames stay.
-fn uncleared(framebuffer: &mut Framebuffer) {
-    five_frames(framebuffer, false);
+fn uncleared(canvas: &mut Canvas) {
+    five_frames(canvas, false);
 }
 
 /// Each frame begins with a cleared target.
-fn cleared(framebuffer: &mut Framebuffer) {
-    five_frames(framebuffer, true);
+fn cleared(canvas: &mut Canvas) {
+    five_frames(canvas, true);
 }
 // ANCHOR_END: uncleared
 
 // ANCHOR: tearing
 /// A screen with one buffer, looked at when the lower half of the new picture has been drawn.
-fn tearing(framebuffer: &mut Framebuffer) {
-    let mut only = Target::new(framebuffer.width(), framebuffer.height());
-    draw_frame(&mut only, 0);
-    let old = only.color.clone();
-    draw_frame(&mut only, 150);
-    *framebuffer = only.color;
-    for y in framebuffer.rect().rows().skip(framebuffer.height() as usize / 2) {
-        for x in framebuffer.rect().columns() {
-            framebuffer.set(x, y, old.get(x, y).unwrap_or_default());
+fn tearing(canvas: &mut Canvas) {
+    draw_frame(canvas, 0);
+    let old = canvas.target.color.clone();
+    draw_frame(canvas, 150);
+    let picture = &mut canvas.target.color;
+    for y in picture.rect().rows().skip(picture.height() as usize / 2) {
+        for x in picture.rect().columns() {
+            picture.set(x, y, old.get(x, y).unwrap_or_default());
         }
     }
 }
 
-/// A screen with two buffers, looked at in the same moment.
-fn presented(framebuffer: &mut Framebuffer) {
-    let mut chain = SwapChain::new(framebuffer.width(), framebuffer.height());
-    draw_frame(&mut chain.back, 0);
-    chain.present();
-    draw_frame(&mut chain.back, 150);
-    *framebuffer = chain.into_front();
+/// A screen with two buffers, looked at in the same moment: the new picture is in the back buffer, unseen.
+fn presented(canvas: &mut Canvas) {
+    let mut screen = screen_for(canvas);
+    draw_frame(canvas, 0);
+    screen.present(&mut canvas.target.color);
+    draw_frame(canvas, 150);
+    canvas.target.color = screen.front().clone();
 }
 // ANCHOR_END: tearing
 
@@ -257,7 +234,7 @@ impl Shader<1> for Relief {
 }
 
 /// A hill of 7×7 vertices.
-fn indexed(framebuffer: &mut Framebuffer) {
+fn indexed(canvas: &mut Canvas) {
     let vertex = |column: u32, row: u32| {
         let (x, z) = (f64::from(column) - 3.0, f64::from(row) - 3.0);
         dvec3(2.4 * x, 4.5 / (1.0 + 0.35 * (x * x + z * z)) - 4.6, 13.0 + 2.0 * z)
@@ -268,9 +245,7 @@ fn indexed(framebuffer: &mut Framebuffer) {
         .flat_map(|corner| [corner, corner + 1, corner + 7, corner + 1, corner + 8, corner + 7])
         .collect();
 
-    let mut target = Target::new(framebuffer.width(), framebuffer.height());
-    render(&mut target, &triangles(Mesh::indexed(vertices, indices)), &Relief, RenderState::default());
-    *framebuffer = target.color;
+    canvas.render(&triangles(Mesh::indexed(vertices, indices)), &Relief, &RenderState::default());
 }
 // ANCHOR_END: indexed
 
@@ -298,18 +273,12 @@ impl Shader<0> for Flat {
 }
 
 /// Three overlapping triangles on either side, blended in two ways.
-fn blended(framebuffer: &mut Framebuffer) {
-    let mut target = Target::new(framebuffer.width(), framebuffer.height());
-    target.clear(Color::gray(40), 1.0);
+fn blended(canvas: &mut Canvas) {
+    canvas.clear(&RenderState { clear_color: Color::gray(40), ..RenderState::default() });
     let mut add = |corners: [[f64; 2]; 3], color, opacity, blend| {
         let merge = Merge { blend, ..Merge::default() };
         let state = RenderState { merge, ..RenderState::default() };
-        draw_more(
-            &mut target,
-            &triangles(Mesh::unindexed(corners.to_vec())),
-            &Flat { color, opacity },
-            state,
-        );
+        canvas.draw(&triangles(Mesh::unindexed(corners.to_vec())), &Flat { color, opacity }, &state);
     };
 
     // The wall behind them: squares of 40 pixels.
@@ -329,7 +298,6 @@ fn blended(framebuffer: &mut Framebuffer) {
         add([at(100.0, 60.0), at(290.0, 140.0), at(120.0, 320.0)], [60.0, 190.0, 80.0], 0.6, blend);
         add([at(70.0, 300.0), at(260.0, 220.0), at(280.0, 400.0)], [70.0, 110.0, 240.0], 0.6, blend);
     }
-    *framebuffer = target.color;
 }
 // ANCHOR_END: blended
 

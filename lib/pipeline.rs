@@ -30,7 +30,7 @@
 //! let mut target = Target::new(64, 48);
 //! target.clear(state.clear_color, state.clear_depth);
 //! draw(&mesh, &White, &state, &Scanline, &mut target, &Silent);
-//! assert_eq!(target.color.get(63, 47), Some(Color::WHITE));
+//! assert_eq!(target.color.get(60, 40), Some(Color::WHITE));
 //! # Ok::<(), rasterbook::mesh::MeshError>(())
 //! ```
 

@@ -261,7 +261,7 @@ impl<A: Copy> Half<A> {
 struct Side<P> {
     x: f64,
     x_slope: f64,
-    x_ends: [f64; 2],
+    x_end: f64,
     value: P,
     value_slope: P,
     value_ends: [P; 2],
@@ -270,19 +270,25 @@ struct Side<P> {
 impl<P: Payload> Side<P> {
     fn new<A>(edge: &Edge<A>, value_ends: [P; 2]) -> Self {
         let [start, end] = [edge.start.position, edge.end.position];
-        let height = end.y - start.y;
+        // Both differences are taken backwards, as in the book: on a level edge that decides the sign of an infinite
+        // slope, and with it what the clamp does there.
+        let height = start.y - end.y;
         Self {
             x: start.x,
-            x_slope: f64::slope(start.x, end.x, height),
-            x_ends: [start.x, end.x],
+            x_slope: f64::slope(end.x, start.x, height),
+            x_end: end.x,
             value: value_ends[0],
-            value_slope: P::slope(value_ends[0], value_ends[1], height),
+            value_slope: P::slope(value_ends[1], value_ends[0], height),
             value_ends,
         }
     }
 
     fn clamp(&mut self) {
-        self.x = self.x.limited(self.x_ends[0], self.x_ends[1]);
+        if self.x_slope < 0.0 {
+            self.x = self.x.max(self.x_end);
+        } else if self.x_slope > 0.0 {
+            self.x = self.x.min(self.x_end);
+        }
     }
 
     fn step(&mut self, rows: f64, limit: StepLimit) {
@@ -395,7 +401,7 @@ pub(crate) mod tests {
     fn nearly_level_edges_overshoot_unless_clamped() {
         // Rows 1 and 2, and only 2/1000 of a pixel between them: one step of y moves x by more than 1000.
         // The row of a fractional middle vertex belongs to both halves, hence the 2s.
-        let corners = [(5.0, 1.999), (3.0, 2.001), (7.5, 2.001)];
+        let corners = [(5.0, 1.999), (3.0, 2.001), (7.5, 2.0011)];
         let clamped = "\
             ............\n\
             ............\n\

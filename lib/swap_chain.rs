@@ -7,32 +7,31 @@
 //! use rasterbook::Color;
 //! use rasterbook::swap_chain::SwapChain;
 //!
-//! let mut chain = SwapChain::new(4, 3);
-//! chain.back.color.set(1, 1, Color::RED);
-//! assert_eq!(chain.front().get(1, 1), Some(Color::BLACK)); // not yet
-//! chain.present();
-//! assert_eq!(chain.front().get(1, 1), Some(Color::RED));
+//! let mut screen = SwapChain::new(4, 3);
+//! let mut back = rasterbook::Framebuffer::new(4, 3);
+//! back.set(1, 1, Color::RED);
+//! assert_eq!(screen.front().get(1, 1), Some(Color::BLACK)); // not yet
+//! screen.present(&mut back);
+//! assert_eq!(screen.front().get(1, 1), Some(Color::RED));
 //! ```
 
 use crate::Framebuffer;
-use crate::depth::Target;
 
-/// A front buffer, which is seen, and a back buffer, which is drawn into. Book, section 9.4.2, Figure 9-9.
+/// A screen's front buffer, which is seen; the back buffer, which is drawn into, is whoever draws's own. Book, section
+/// 9.4.2, Figure 9-9.
 #[derive(Clone, Debug)]
 pub struct SwapChain {
     front: Framebuffer,
-    /// What the next picture is drawn into.
-    pub back: Target,
 }
 
 impl SwapChain {
-    /// Two black buffers of `width` × `height` pixels.
+    /// A black screen of `width` × `height` pixels.
     ///
     /// # Panics
     /// As [`Framebuffer::new`] does.
     #[must_use]
     pub fn new(width: u32, height: u32) -> Self {
-        Self { front: Framebuffer::new(width, height), back: Target::new(width, height) }
+        Self { front: Framebuffer::new(width, height) }
     }
 
     /// What the screen shows.
@@ -41,16 +40,10 @@ impl SwapChain {
         &self.front
     }
 
-    /// Shows the finished picture. The two buffers change places, which takes no time; the back buffer then holds the
-    /// picture before, and wants to be cleared.
-    pub fn present(&mut self) {
-        std::mem::swap(&mut self.front, &mut self.back.color);
-    }
-
-    /// The front buffer, once nothing more is to be drawn.
-    #[must_use]
-    pub fn into_front(self) -> Framebuffer {
-        self.front
+    /// Shows the finished picture in the back buffer. The two change places, which takes no time; the back buffer then
+    /// holds the picture before, and wants to be cleared.
+    pub const fn present(&mut self, back: &mut Framebuffer) {
+        std::mem::swap(&mut self.front, back);
     }
 }
 
@@ -61,14 +54,14 @@ mod tests {
 
     #[test]
     fn drawing_is_not_seen_until_presented() {
-        let mut chain = SwapChain::new(2, 2);
+        let (mut screen, mut back) = (SwapChain::new(2, 2), Framebuffer::new(2, 2));
         for color in [Color::RED, Color::GREEN] {
-            let before = chain.front().clone();
-            chain.back.clear(color, 1.0);
-            assert!(*chain.front() == before);
-            chain.present();
-            assert_eq!(chain.front().get(0, 0), Some(color));
+            let before = screen.front().clone();
+            back.clear(color);
+            assert!(*screen.front() == before);
+            screen.present(&mut back);
+            assert_eq!(screen.front().get(0, 0), Some(color));
         }
-        assert_eq!(chain.back.color.get(0, 0), Some(Color::RED), "the picture before");
+        assert_eq!(back.get(0, 0), Some(Color::RED), "the picture before");
     }
 }

@@ -57,7 +57,8 @@ const GREEN: Color = Color::rgb(80, 180, 90);
 
 fn draw(chapter: &str, name: &str) -> Framebuffer {
     let variant = variant(chapter, name);
-    variant.draw(variant.size, 0)
+    let subject = variant.subject().expect("assets");
+    variant.draw(variant.size, 0, subject.as_ref())
 }
 
 fn count(picture: &Framebuffer, is_meant: impl Fn(i32, i32, Color) -> bool) -> usize {

@@ -49,7 +49,7 @@ fn all_pictures() -> impl Iterator<Item = Picture> {
     rows.flat_map(|(chapter, program, variant)| {
         let name = format!("{}__{}", chapter.name, variant.name);
         // Of an animation the first, a middle and the last frame.
-        let frames = match variant.animation() {
+        let frames = match variant.animation {
             None => vec![None],
             Some(animation) => [0, animation.frames / 2, animation.frames - 1].map(Some).to_vec(),
         };

@@ -24,6 +24,9 @@ pub(super) struct Request {
     pub(super) frame: Option<u32>,
     pub(super) animate: bool,
     pub(super) compare: Option<Comparison>,
+    pub(super) model: Option<PathBuf>,
+    pub(super) texture: Option<PathBuf>,
+    pub(super) as_is: bool,
 }
 
 /// What `--compare` compares with.
@@ -53,6 +56,9 @@ impl Request {
             frame: matches.get_one("frame").copied(),
             animate: matches.get_flag("animate"),
             compare: comparison(&matches),
+            model: matches.get_one("model").cloned(),
+            texture: matches.get_one("texture").cloned(),
+            as_is: matches.get_flag("as-is"),
         })
     }
 }
@@ -73,6 +79,7 @@ fn command(chapter: &Chapter) -> Command {
         .disable_version_flag(true)
         .args(what_to_draw(chapter))
         .args(how_to_draw(chapter))
+        .args(subject())
 }
 
 fn switch(id: &'static str, help: &'static str) -> Arg {
@@ -89,6 +96,21 @@ fn what_to_draw(chapter: &Chapter) -> [Arg; 3] {
         Arg::new("variant").value_name("VARIANT").help(variant),
         switch("list", "List the variants: what each is called and what to look for").exclusive(true),
         switch("all", "Draw all variants, of animations the first frame").conflicts_with("variant"),
+    ]
+}
+
+/// What is drawn in place of a variant's own model.
+fn subject() -> [Arg; 3] {
+    let path = value_parser!(PathBuf);
+    [
+        option("model", "FILE.obj", "Draw this model (Wavefront OBJ), where the variant draws one")
+            .value_parser(path.clone())
+            .conflicts_with("all"),
+        option("texture", "FILE", "Cover the model with this image (PNG, BMP, TGA, JPEG)")
+            .value_parser(path)
+            .conflicts_with("all"),
+        switch("as-is", "Leave the model where it is and as large as it is, not centered and scaled to fit")
+            .conflicts_with("all"),
     ]
 }
 

@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use super::run;
+use super::{Canvas, Failure, Subject, run};
 use crate::Framebuffer;
 
 /// A chapter: the question it asks, and the pictures that answer it.
@@ -52,15 +52,29 @@ pub struct Variant {
     pub size: (u32, u32),
     /// For a deliberate mistake: that it is one, and which variant mends it.
     pub mistake: Mistake,
+    /// How long and how fast it is, if it is an animation.
+    pub animation: Option<Animation>,
     figure: Figure,
 }
 
 /// What draws a picture.
 #[derive(Clone, Copy, Debug)]
 enum Figure {
-    Still(fn(&mut Framebuffer)),
-    /// Its second argument is the number of the frame.
-    Animated(fn(&mut Framebuffer, u32), Animation),
+    /// Chapters 1 to 8: into a framebuffer.
+    Plain(fn(&mut Framebuffer)),
+    /// Chapter 2, of a model.
+    PlainModel(fn(&mut Framebuffer, &Subject), Assets),
+    /// From chapter 9 on: with the pipeline.
+    Canvas(fn(&mut Canvas)),
+    /// The same, of a model.
+    Model(fn(&mut Canvas, &Subject), Assets),
+}
+
+/// The model and the texture that are drawn when none is given: names of files in `assets/`.
+#[derive(Clone, Copy, Debug)]
+struct Assets {
+    model: &'static str,
+    texture: &'static str,
 }
 
 /// How long an animation is, and how fast.
@@ -84,22 +98,48 @@ pub enum Mistake {
 }
 
 impl Variant {
-    /// A right picture of 640×480 pixels.
+    /// A right picture of 640×480 pixels, drawn into a framebuffer.
     #[must_use]
     pub const fn new(name: &'static str, draw: fn(&mut Framebuffer), look: &'static str) -> Self {
-        Self { name, look, source: "", size: (640, 480), mistake: Mistake::No, figure: Figure::Still(draw) }
+        Self::of(name, Figure::Plain(draw), look)
     }
 
-    /// An animation of 640×480 pixels; `draw` gets the number of a frame, and each frame can be drawn by itself.
+    /// The same, drawn with the pipeline.
     #[must_use]
-    pub const fn animated(
+    pub const fn with_pipeline(name: &'static str, draw: fn(&mut Canvas), look: &'static str) -> Self {
+        Self::of(name, Figure::Canvas(draw), look)
+    }
+
+    /// The same of a model; which one, `--model` can change.
+    #[must_use]
+    pub const fn of_model(
         name: &'static str,
-        draw: fn(&mut Framebuffer, u32),
-        animation: Animation,
+        draw: fn(&mut Canvas, &Subject),
+        [model, texture]: [&'static str; 2],
         look: &'static str,
     ) -> Self {
-        let figure = Figure::Animated(draw, animation);
-        Self { name, look, source: "", size: (640, 480), mistake: Mistake::No, figure }
+        Self::of(name, Figure::Model(draw, Assets { model, texture }), look)
+    }
+
+    /// A picture of a model without the pipeline.
+    #[must_use]
+    pub const fn of_model_in_plane(
+        name: &'static str,
+        draw: fn(&mut Framebuffer, &Subject),
+        [model, texture]: [&'static str; 2],
+        look: &'static str,
+    ) -> Self {
+        Self::of(name, Figure::PlainModel(draw, Assets { model, texture }), look)
+    }
+
+    const fn of(name: &'static str, figure: Figure, look: &'static str) -> Self {
+        Self { name, look, source: "", size: (640, 480), mistake: Mistake::No, animation: None, figure }
+    }
+
+    /// The same, as an animation: the canvas says which frame to draw, and each can be drawn by itself.
+    #[must_use]
+    pub const fn animated(self, animation: Animation) -> Self {
+        Self { animation: Some(animation), ..self }
     }
 
     /// The same, of another size in pixels.
@@ -126,26 +166,39 @@ impl Variant {
         Self { mistake: Mistake::Unmended, ..self }
     }
 
-    /// How long and how fast it is, if it is an animation.
+    /// Whether `--model` and `--texture` mean anything to it.
     #[must_use]
-    pub const fn animation(&self) -> Option<Animation> {
+    pub const fn has_model(&self) -> bool {
+        matches!(self.figure, Figure::Model(..) | Figure::PlainModel(..))
+    }
+
+    /// Its own model and texture, if it draws one.
+    ///
+    /// # Errors
+    /// If the table names files that are not in `assets/`.
+    pub fn subject(&self) -> Result<Option<Subject>, Failure> {
         match self.figure {
-            Figure::Still(_) => None,
-            Figure::Animated(_, animation) => Some(animation),
+            Figure::Plain(_) | Figure::Canvas(_) => Ok(None),
+            Figure::PlainModel(_, Assets { model, texture })
+            | Figure::Model(_, Assets { model, texture }) => Subject::of_assets(model, texture).map(Some),
         }
     }
 
-    /// Draws the picture, or a frame of the animation, into a new framebuffer of the given size in pixels.
+    /// Draws the picture, or a frame of the animation, of the given size in pixels and of the given subject; without a
+    /// subject, a variant that draws one stays black.
     ///
     /// # Panics
     /// As [`Framebuffer::new`] does.
     #[must_use]
-    pub fn draw(&self, (width, height): (u32, u32), frame: u32) -> Framebuffer {
-        let mut framebuffer = Framebuffer::new(width, height);
-        match self.figure {
-            Figure::Still(draw) => draw(&mut framebuffer),
-            Figure::Animated(draw, _) => draw(&mut framebuffer, frame),
+    pub fn draw(&self, size: (u32, u32), frame: u32, subject: Option<&Subject>) -> Framebuffer {
+        let mut canvas = Canvas::new(size, self.size, frame);
+        match (self.figure, subject) {
+            (Figure::Plain(draw), _) => draw(&mut canvas.target.color),
+            (Figure::PlainModel(draw, _), Some(subject)) => draw(&mut canvas.target.color, subject),
+            (Figure::Canvas(draw), _) => draw(&mut canvas),
+            (Figure::Model(draw, _), Some(subject)) => draw(&mut canvas, subject),
+            (Figure::PlainModel(..) | Figure::Model(..), None) => {}
         }
-        framebuffer
+        canvas.into_picture()
     }
 }

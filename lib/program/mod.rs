@@ -16,18 +16,20 @@
 //!     question: "How does a dot get onto the screen?",
 //!     variants: &[Variant::new("dot", dot, "one red pixel at (1, 1)").size(4, 4)],
 //! };
-//! assert_eq!(CHAPTER.lead().draw((4, 4), 0).get(1, 1), Some(Color::RED));
+//! assert_eq!(CHAPTER.lead().draw((4, 4), 0, None).get(1, 1), Some(Color::RED));
 //! // fn main() -> std::process::ExitCode { CHAPTER.main() }
 //! ```
 
 mod animation;
 mod arguments;
 pub mod assets;
+mod canvas;
 mod chapter;
 mod failure;
 mod output;
 pub mod picture;
 mod run;
 
+pub use canvas::{Canvas, Subject};
 pub use chapter::{Animation, Chapter, Mistake, Variant};
 pub use failure::Failure;

@@ -3,13 +3,17 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use glam::DVec3;
+
 use super::Failure;
-use super::animation::encode;
+use super::animation::{encode, progress_bar};
 use super::arguments::{Comparison, Request, list};
+use super::canvas::Subject;
 use super::chapter::{Chapter, Mistake, Variant};
 use super::output::{Destination, note, say};
 use super::picture::{Zoom, difference, side_by_side, zoomed};
 use crate::Framebuffer;
+use crate::model::{FileError, Model, NormalStyle, load_texture};
 
 /// Reads the arguments, does what they say, reports.
 pub(super) fn main(chapter: &Chapter) -> ExitCode {
@@ -80,14 +84,74 @@ fn other<'a>(
     }
 }
 
-/// The picture of a variant as it was asked for: its size, its frame.
-fn picture(variant: &Variant, request: &Request, frame: u32) -> Framebuffer {
-    variant.draw(request.size.unwrap_or(variant.size), frame)
+/// A variant as it was asked for: its size, and what it is a picture of.
+struct Sitting<'a> {
+    variant: &'a Variant,
+    size: (u32, u32),
+    subject: Option<Subject>,
+}
+
+impl<'a> Sitting<'a> {
+    fn new(variant: &'a Variant, request: &Request) -> Result<Self, Failure> {
+        let is_asked = request.model.is_some() || request.texture.is_some() || request.as_is;
+        if is_asked && !variant.has_model() {
+            let reason = format!(
+                "'{}' draws no model: --model, --texture and --as-is mean nothing to it",
+                variant.name
+            );
+            return Err(Failure::Usage(reason));
+        }
+        let subject = match variant.subject()? {
+            None => None,
+            Some(own) => Some(subject_of(own, request)?),
+        };
+        Ok(Self { variant, size: request.size.unwrap_or(variant.size), subject })
+    }
+
+    fn draw(&self, frame: u32) -> Framebuffer {
+        self.variant.draw(self.size, frame, self.subject.as_ref())
+    }
+}
+
+/// Where a model is brought to, and how far it reaches from there; the near plane of the book's view is at z = 2.
+const PLACE: (DVec3, f64) = (DVec3::new(0.0, 0.0, 4.0), 1.7);
+
+/// What was asked for in place of a variant's own model and texture.
+fn subject_of(own: Subject, request: &Request) -> Result<Subject, Failure> {
+    let failure = |error: FileError| Failure::Runtime(error.to_string());
+    let mut warnings = Vec::new();
+    let (model, own_texture) = match &request.model {
+        None => (own.model, own.texture),
+        Some(path) => {
+            let progress = progress_bar(0, "bytes");
+            let loaded = Model::load(path, NormalStyle::Smooth, |read, total| {
+                progress.set_length(total);
+                progress.set_position(read);
+            });
+            progress.finish_and_clear();
+            let (model, more) = loaded.map_err(failure)?;
+            warnings.extend(more);
+            (model, None)
+        }
+    };
+    let texture = match &request.texture {
+        None => own_texture,
+        Some(path) => {
+            let (texture, more) = load_texture(path).map_err(failure)?;
+            warnings.extend(more);
+            Some(texture)
+        }
+    };
+    for warning in warnings {
+        note(&format!("warning: {warning}"));
+    }
+    let model = if request.as_is { model } else { model.fitted(PLACE.0, PLACE.1) };
+    Ok(Subject { model, texture })
 }
 
 /// The frame that was asked for, if the variant has it.
 fn frame_of(variant: &Variant, request: &Request) -> Result<u32, Failure> {
-    match (request.frame, variant.animation()) {
+    match (request.frame, variant.animation) {
         (None, _) => Ok(0),
         (Some(_), None) => {
             Err(Failure::Usage(format!("'{}' is one picture: it has no frames", variant.name)))
@@ -123,20 +187,21 @@ fn name_of(variant: &Variant, request: &Request) -> String {
 
 fn draw_one(variant: &Variant, request: &Request, destination: &Destination) -> Result<(), Failure> {
     let frame = frame_of(variant, request)?;
-    let picture = enlarged(picture(variant, request, frame), request.zoom)?;
+    let picture = enlarged(Sitting::new(variant, request)?.draw(frame), request.zoom)?;
     let path = destination.write(&name_of(variant, request), &picture)?;
     say(&path.display().to_string())
 }
 
 fn animate(variant: &Variant, request: &Request, destination: &Destination) -> Result<(), Failure> {
-    let Some(animation) = variant.animation() else {
+    let Some(animation) = variant.animation else {
         return Err(Failure::Usage(format!("'{}' is one picture: it cannot be animated", variant.name)));
     };
+    let sitting = Sitting::new(variant, request)?;
     // The first frame shows whether the zoom makes sense.
-    enlarged(picture(variant, request, 0), request.zoom)?;
-    let draw = |frame| {
-        let picture = picture(variant, request, frame);
-        request.zoom.map_or_else(|| picture.clone(), |zoom| zoomed(&picture, zoom))
+    enlarged(sitting.draw(0), request.zoom)?;
+    let draw = |frame| match request.zoom {
+        None => sitting.draw(frame),
+        Some(zoom) => zoomed(&sitting.draw(frame), zoom),
     };
     let path =
         destination.write_animation(&name_of(variant, request), |format| encode(format, animation, draw))?;
@@ -150,7 +215,8 @@ fn draw_comparison(
     destination: &Destination,
 ) -> Result<(), Failure> {
     let frame = frame_of(this, request)?;
-    let [first, second] = [this, that].map(|variant| picture(variant, request, frame));
+    let first = Sitting::new(this, request)?.draw(frame);
+    let second = Sitting::new(that, request)?.draw(frame);
     let Some((marked, count)) = difference(&first, &second) else {
         let reason = format!("'{}' and '{}' differ in size: give --size", this.name, that.name);
         return Err(Failure::Usage(reason));

@@ -25,6 +25,7 @@ chapters!(
     "../../chapters/ch07_clipping.rs" ch07_clipping,
     "../../chapters/ch08_cvv.rs" ch08_cvv,
     "../../chapters/ch09_pipeline.rs" ch09_pipeline,
+    "../../chapters/ch10_matrices_lighting/main.rs" ch10_matrices_lighting,
 );
 
 /// A row of a chapter's table.

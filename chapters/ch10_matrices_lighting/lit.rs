@@ -1,0 +1,88 @@
+//! The book's last program: a textured model under a light, and its last exercise, the spike bug.
+
+use glam::{DMat4, DVec3, dvec3};
+use rasterbook::clip::ClipVertex;
+use rasterbook::cull::CullMode;
+use rasterbook::light::lambert;
+use rasterbook::model::ModelVertex;
+use rasterbook::pipeline::RenderState;
+use rasterbook::program::{Canvas, Subject};
+use rasterbook::real::Real;
+use rasterbook::scanline::{StepLimit, Walk};
+use rasterbook::shader::{Shaded, Shader};
+use rasterbook::texture::{AddressMode, Texture};
+use rasterbook::transform::{Frustum, rotate_x_to_y, rotate_z_to_y, translate};
+
+/// The camera of the book's last chapter.
+const CAMERA: Frustum = Frustum { left: -1.6, right: 1.6, bottom: -1.2, top: 1.2, near: 2.0, far: 10.0 };
+/// Towards the light: from the upper right, behind the eye; of length 1.
+const TO_LIGHT: [f64; 3] = [0.577_350_269_189_625_8, 0.577_350_269_189_625_8, -0.577_350_269_189_625_8];
+/// The light that is everywhere.
+const AMBIENT: f64 = 0.2;
+
+// ANCHOR: lit_shader
+/// Diffuse light on a texture.
+struct Lit {
+    clip_from_model: DMat4,
+    view_from_model: DMat4,
+    texture: Texture,
+}
+
+impl Shader<5> for Lit {
+    type Attributes = ModelVertex;
+
+    fn vertex(&self, vertex: &ModelVertex) -> ClipVertex<5> {
+        // A normal is a direction: with ω = 0 it turns and does not move.
+        let normal = self.view_from_model * vertex.normal.extend(0.0);
+        ClipVertex {
+            position: self.clip_from_model * vertex.position.extend(1.0),
+            varyings: [vertex.uv[0], vertex.uv[1], normal.x, normal.y, normal.z],
+        }
+    }
+
+    fn fragment<R: Real>(&self, [u, v, nx, ny, nz]: [R; 5]) -> Shaded<R> {
+        let diffuse = lambert([nx, ny, nz], TO_LIGHT.map(R::of));
+        let brightness = (diffuse + R::of(AMBIENT)).min(R::of(1.0));
+        Shaded::opaque(self.texture.nearest([u, v], AddressMode::Repeat).map(|channel| brightness * channel))
+    }
+}
+// ANCHOR_END: lit_shader
+
+// ANCHOR: model_matrix
+/// An angle in radians from degrees.
+pub(super) fn degrees(angle: f64) -> f64 {
+    angle * std::f64::consts::PI / 180.0
+}
+
+/// The turns of a frame, about the point (0, 0, 4), applied to a projection: P · T · Rz · Rx · T⁻¹.
+fn turned(clip_from_view: DMat4, frame: u32) -> DMat4 {
+    const PIVOT: DVec3 = dvec3(0.0, 0.0, 4.0);
+    let angle = degrees(f64::from(45 + frame));
+    clip_from_view * translate(PIVOT) * rotate_x_to_y(angle) * rotate_z_to_y(angle) * translate(-PIVOT)
+}
+// ANCHOR_END: model_matrix
+
+fn draw_subject(canvas: &mut Canvas, subject: &Subject, walk: Walk) {
+    let state = RenderState { cull: CullMode::Back, walk, ..RenderState::default() };
+    canvas.clear(&state);
+    for part in &subject.model.parts {
+        let shader = Lit {
+            clip_from_model: CAMERA.matrix() * turned(DMat4::IDENTITY, canvas.frame),
+            view_from_model: turned(DMat4::IDENTITY, canvas.frame),
+            texture: subject.texture_of(part),
+        };
+        canvas.draw(&part.mesh, &shader, &state);
+    }
+}
+
+/// The model, with the book's remedy, which is the default.
+pub(super) fn lit(canvas: &mut Canvas, subject: &Subject) {
+    draw_subject(canvas, subject, Walk::default());
+}
+
+// ANCHOR: spikes
+/// The model, t free to pass the end of an edge.
+pub(super) fn spikes(canvas: &mut Canvas, subject: &Subject) {
+    draw_subject(canvas, subject, Walk { limit: StepLimit::Overrun, ..Walk::default() });
+}
+// ANCHOR_END: spikes

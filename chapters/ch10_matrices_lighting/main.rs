@@ -1,0 +1,50 @@
+//! # Chapters 10 and 11: matrices and light
+//!
+//! **How does a thing get its place, and its light and shade?** A matrix moves, turns and projects; the matrices of
+//! many steps are multiplied once, and one product takes every vertex to where it is seen. What is bright or dark says
+//! the angle between a surface and the light.
+//!
+//! New here: matrices (`lib/transform.rs`), light (`lib/light.rs`), models and textures from files (`lib/model.rs`).
+//! The figures: `matrices.rs`, `lit.rs`, `shading.rs`, `textures.rs`. Book: chapters 10 and 11.
+
+mod lit;
+mod matrices;
+mod shading;
+mod textures;
+
+use std::process::ExitCode;
+
+use rasterbook::program::{Animation, Chapter, Variant};
+
+/// 360 frames, a degree each.
+const TURN: Animation = Animation { frames: 360, rate: 30 };
+
+pub(crate) const CHAPTER: Chapter = Chapter {
+    name: "ch10_matrices_lighting",
+    question: "How does a thing get its place, and its light and shade?",
+    variants: &[
+        Variant::of_model("lit", lit::lit, ["pawn.obj", "wood.png"], "a model turns in the light: bright where it faces the light, never black (ambient light)")
+            .source("sections 11.1 to 11.3").animated(TURN),
+        Variant::with_pipeline("rotation", matrices::rotation, "a triangle turns about an upright axis, a degree a frame; it vanishes when we see its back")
+            .source("section 10.6").animated(TURN),
+        Variant::with_pipeline("pivot", matrices::pivot, "nine steps of a quarter turn, dark to bright: left about the origin (the white dot), right about the arrow's own middle")
+            .source("section 10.5").size(800, 400),
+        Variant::with_pipeline("camera", matrices::camera, "two boxes, a ball and a pawn on a wall's bricks, seen from the upper right by a look-at matrix: what is upright stays upright"),
+        Variant::of_model("spikes", lit::spikes, ["sphere.obj", "numbers.png"], "colored specks along the triangles' edges: texels from beyond them, fetched with t past an edge's end; try --zoom 8")
+            .source("section 11.4").animated(TURN).mended_by("spikes-fixed"),
+        Variant::of_model("spikes-fixed", lit::lit, ["sphere.obj", "numbers.png"], "the same ball with t limited on the edges: nearly all specks are gone")
+            .source("section 11.4").animated(TURN),
+        Variant::with_pipeline("normals-wrong", shading::normals_wrong, "a flattened ball, its normals turned by the model matrix: they lean to the sides, and the light does not fit the shape")
+            .mended_by("normals"),
+        Variant::with_pipeline("normals", shading::normals, "the same ball, its normals turned by the inverse transpose: they stand upright on the surface, and the top is bright"),
+        Variant::with_pipeline("flat", shading::flat, "one normal a face: every face of a coarse ball (above) shows, and of a fine one (below) still some"),
+        Variant::with_pipeline("gouraud", shading::gouraud, "light reckoned at the corners: smooth, but the highlight of the coarse ball is a star, and dim"),
+        Variant::with_pipeline("phong", shading::phong, "light reckoned at every pixel: a round highlight on the coarse ball too; at grazing light (below) it ends in a hard edge"),
+        Variant::with_pipeline("blinn-phong", shading::blinn_phong, "the same with the half vector: the highlight at grazing light fades out without an edge"),
+        Variant::with_pipeline("nearest", textures::nearest, "a brick floor to the horizon, the nearest texel for each pixel: it flickers and breaks up far away"),
+    ],
+};
+
+fn main() -> ExitCode {
+    CHAPTER.main()
+}

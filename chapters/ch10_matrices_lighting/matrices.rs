@@ -1,0 +1,183 @@
+//! What matrices do: turn, turn about a point, and put the eye where one likes.
+
+use glam::{DMat4, DVec3, dvec3};
+use rasterbook::Color;
+use rasterbook::clip::ClipVertex;
+use rasterbook::cull::CullMode;
+use rasterbook::light::lambert;
+use rasterbook::mesh::Mesh;
+use rasterbook::model::ModelVertex;
+use rasterbook::pipeline::RenderState;
+use rasterbook::program::{Canvas, assets};
+use rasterbook::real::Real;
+use rasterbook::shader::{Shaded, Shader};
+use rasterbook::texture::{AddressMode, Texture};
+use rasterbook::transform::{
+    Frustum, Viewport, about, look_at, normal_matrix, rotate_x_to_y, rotate_x_to_z, scale, translate,
+};
+
+use super::lit::degrees;
+
+/// A textured surface without light.
+struct Textured {
+    clip_from_model: DMat4,
+    texture: Texture,
+}
+
+impl Shader<2> for Textured {
+    type Attributes = (DVec3, [f64; 2]);
+
+    fn vertex(&self, (position, uv): &(DVec3, [f64; 2])) -> ClipVertex<2> {
+        ClipVertex { position: self.clip_from_model * position.extend(1.0), varyings: *uv }
+    }
+
+    fn fragment<R: Real>(&self, uv: [R; 2]) -> Shaded<R> {
+        Shaded::opaque(self.texture.nearest(uv, AddressMode::Clamp))
+    }
+}
+
+// ANCHOR: rotation
+/// A triangle turns about the upright axis through (0, 0, 4).
+pub(super) fn rotation(canvas: &mut Canvas) {
+    let camera = Frustum { left: -3.2, right: 3.2, bottom: -2.4, top: 2.4, near: 1.0, far: 10.0 };
+    let axis = dvec3(0.0, 0.0, 4.0);
+    let turn = rotate_x_to_z(degrees(f64::from(canvas.frame)));
+    // Read from the right: to the origin, turn, back, project.
+    let clip_from_model = camera.matrix() * translate(axis) * turn * translate(-axis);
+
+    let corners = [(-1.0, 1.0, [0.0, 1.0]), (-1.0, -1.0, [0.0, 0.0]), (1.0, -1.0, [1.0, 0.0])];
+    let vertices = corners.map(|(x, y, uv)| (dvec3(x, y, 3.0), uv)).to_vec();
+    let state = RenderState { cull: CullMode::Back, ..RenderState::default() };
+    let shader = Textured { clip_from_model, texture: Texture::book() };
+    if let Ok(mesh) = Mesh::unindexed(vertices) {
+        canvas.render(&mesh, &shader, &state);
+    }
+}
+// ANCHOR_END: rotation
+
+/// One color, whatever the light.
+struct Plain {
+    clip_from_model: DMat4,
+    color: Color,
+}
+
+impl Shader<0> for Plain {
+    type Attributes = [f64; 2];
+
+    fn vertex(&self, &[x, y]: &[f64; 2]) -> ClipVertex<0> {
+        ClipVertex { position: self.clip_from_model * dvec3(x, y, 0.0).extend(1.0), varyings: [] }
+    }
+
+    fn fragment<R: Real>(&self, _: [R; 0]) -> Shaded<R> {
+        Shaded::opaque(self.color.to_f64().map(R::of))
+    }
+}
+
+/// An arrow that points up, its middle at the origin.
+const ARROW: [[f64; 2]; 9] = [
+    [-0.1, -0.5],
+    [0.1, -0.5],
+    [0.1, 0.1],
+    [-0.1, -0.5],
+    [0.1, 0.1],
+    [-0.1, 0.1],
+    [-0.3, 0.1],
+    [0.3, 0.1],
+    [0.0, 0.5],
+];
+
+// ANCHOR: pivot
+/// An arrow in steps of a tenth of a right angle: about the origin on the left, about its middle on the right.
+pub(super) fn pivot(canvas: &mut Canvas) {
+    let state = RenderState::default();
+    canvas.clear(&state);
+    // Two square panels that show −0.5 to 3.5 in both directions, without perspective.
+    let clip_from_world = scale(dvec3(0.5, 0.5, 1.0)) * translate(dvec3(-1.5, -1.5, 0.0));
+    let place = dvec3(2.4, 0.6, 0.0);
+    for step in 0..9 {
+        let turn = rotate_x_to_y(degrees(10.0 * f64::from(step)));
+        let tone = 60.0 + 24.0 * f64::from(step);
+        let about_origin = turn * translate(place);
+        let about_middle = about(place, turn) * translate(place);
+        let colors = [[tone, tone / 2.0, 40.0], [40.0, tone * 0.75, tone]].map(Color::truncated);
+        let panels = [about_origin, about_middle].into_iter().zip(colors);
+        for (panel, (world_from_model, color)) in (0..).zip(panels) {
+            let clip_from_model = clip_from_world * world_from_model;
+            draw_flat(canvas, &ARROW, &Plain { clip_from_model, color }, canvas.panel(panel, 2));
+        }
+    }
+    // The origin.
+    for panel in 0..2 {
+        let dot = [[-0.04, -0.04], [0.04, -0.04], [0.04, 0.04], [-0.04, -0.04], [0.04, 0.04], [-0.04, 0.04]];
+        let shader = Plain { clip_from_model: clip_from_world, color: Color::WHITE };
+        draw_flat(canvas, &dot, &shader, canvas.panel(panel, 2));
+    }
+}
+// ANCHOR_END: pivot
+
+fn draw_flat(canvas: &mut Canvas, corners: &[[f64; 2]], shader: &Plain, panel: Viewport) {
+    let state = RenderState { viewport: Some(panel), ..RenderState::default() };
+    if let Ok(mesh) = Mesh::unindexed(corners.to_vec()) {
+        canvas.draw(&mesh, shader, &state);
+    }
+}
+
+/// Diffuse light in world space.
+struct LitInWorld {
+    clip_from_world: DMat4,
+    world_from_model: DMat4,
+    texture: Texture,
+    /// How often the texture is repeated.
+    repeat: f64,
+}
+
+impl Shader<5> for LitInWorld {
+    type Attributes = ModelVertex;
+
+    fn vertex(&self, vertex: &ModelVertex) -> ClipVertex<5> {
+        let normal = (normal_matrix(self.world_from_model) * vertex.normal).normalize();
+        let world = self.world_from_model * vertex.position.extend(1.0);
+        let [u, v] = vertex.uv.map(|coordinate| coordinate * self.repeat);
+        ClipVertex { position: self.clip_from_world * world, varyings: [u, v, normal.x, normal.y, normal.z] }
+    }
+
+    fn fragment<R: Real>(&self, [u, v, nx, ny, nz]: [R; 5]) -> Shaded<R> {
+        let to_light = [-0.48, 0.8, -0.36].map(R::of);
+        let brightness = lambert([nx, ny, nz], to_light) * R::of(0.75) + R::of(0.25);
+        Shaded::opaque(self.texture.nearest([u, v], AddressMode::Repeat).map(|channel| brightness * channel))
+    }
+}
+
+// ANCHOR: camera
+/// A few things on the ground, seen from the upper right.
+pub(super) fn camera(canvas: &mut Canvas) {
+    let eye = dvec3(5.5, 5.0, -8.0);
+    let view_from_world = look_at(eye, dvec3(0.0, 0.6, 0.5), DVec3::Y);
+    let clip_from_view = Frustum::from_field_of_view(degrees(40.0), 4.0 / 3.0, 1.0, 40.0).matrix();
+    let clip_from_world = clip_from_view * view_from_world;
+
+    let state = RenderState {
+        cull: CullMode::Back,
+        clear_color: Color::rgb(150, 180, 210),
+        ..RenderState::default()
+    };
+    canvas.clear(&state);
+    // Each thing: its model and texture, how it is scaled, and where its middle stands.
+    let things = [
+        ("cube.obj", "bricks.png", dvec3(5.0, 0.1, 5.0), dvec3(0.0, -0.1, 0.0), 6.0),
+        ("cube.obj", "letters.png", DVec3::splat(0.8), dvec3(-1.9, 0.8, 1.6), 1.0),
+        ("cube.obj", "wood.png", dvec3(0.5, 1.3, 0.5), dvec3(1.7, 1.3, 2.2), 1.0),
+        ("sphere.obj", "numbers.png", DVec3::splat(0.9), dvec3(1.6, 0.9, -1.4), 1.0),
+        ("pawn.obj", "wood.png", DVec3::splat(1.3), dvec3(-1.3, 1.3, -1.6), 1.0),
+    ];
+    for (model, texture, size, place, repeat) in things {
+        let (Ok(model), Ok(texture)) = (assets::model(model), assets::texture(texture)) else { continue };
+        // The models stand about (0, 0, 4).
+        let world_from_model = translate(place) * scale(size) * translate(dvec3(0.0, 0.0, -4.0));
+        for part in &model.parts {
+            let shader = LitInWorld { clip_from_world, world_from_model, texture: texture.clone(), repeat };
+            canvas.draw(&part.mesh, &shader, &state);
+        }
+    }
+}
+// ANCHOR_END: camera

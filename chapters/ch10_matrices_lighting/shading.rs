@@ -1,0 +1,216 @@
+//! Where light is reckoned (faces, corners, pixels), which highlight there is, and how normals are turned.
+
+use std::f64::consts::{PI, TAU};
+
+use glam::{DMat3, DMat4, DVec3, dvec3};
+use rasterbook::Color;
+use rasterbook::clip::ClipVertex;
+use rasterbook::cull::CullMode;
+use rasterbook::light::{Highlight, Material, normalize};
+use rasterbook::mesh::Mesh;
+use rasterbook::pipeline::RenderState;
+use rasterbook::program::Canvas;
+use rasterbook::real::Real;
+use rasterbook::shader::{Shaded, Shader};
+use rasterbook::transform::{Frustum, normal_matrix, rotate_x_to_y, scale, translate};
+
+use super::lit::degrees;
+
+/// A point of a ball of radius 1, and the normal that goes with it.
+#[derive(Clone, Copy)]
+struct Corner {
+    position: DVec3,
+    normal: DVec3,
+}
+
+/// A ball of so many rings and segments.
+fn ball(rings: u32, segments: u32) -> Mesh<Corner> {
+    let point = |ring: u32, segment: u32| {
+        let (up, round) =
+            (PI * f64::from(ring) / f64::from(rings), TAU * f64::from(segment) / f64::from(segments));
+        dvec3(libm::sin(up) * libm::sin(round), -libm::cos(up), -libm::sin(up) * libm::cos(round))
+    };
+    let mut vertices = Vec::new();
+    for ring in 0..rings {
+        for segment in 0..segments {
+            let [a, b] = [point(ring, segment), point(ring, segment + 1)];
+            let [c, d] = [point(ring + 1, segment + 1), point(ring + 1, segment)];
+            for corner in [a, b, c, a, c, d] {
+                vertices.push(Corner { position: corner, normal: corner });
+            }
+        }
+    }
+    well_formed(vertices)
+}
+
+fn well_formed(vertices: Vec<Corner>) -> Mesh<Corner> {
+    Mesh::unindexed(vertices).unwrap_or_else(|error| unreachable!("six corners a quad: {error}"))
+}
+
+/// The same ball with the normals of its faces.
+fn faceted(ball: &Mesh<Corner>) -> Mesh<Corner> {
+    let mut vertices = Vec::new();
+    for triangle in ball.vertices().chunks_exact(3) {
+        let [a, b, c] = [triangle[0].position, triangle[1].position, triangle[2].position];
+        let normal = (c - a).cross(b - a).normalize_or(DVec3::Y);
+        vertices.extend([a, b, c].map(|position| Corner { position, normal }));
+    }
+    well_formed(vertices)
+}
+
+// ANCHOR: frequency
+/// Where light is reckoned.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Frequency {
+    /// In the vertex shader; colors are interpolated (Gouraud, 1971). With the normals of faces: flat shading.
+    Vertex,
+    /// In the fragment shader; normals are interpolated (Phong, 1975).
+    Fragment,
+}
+
+/// A lit ball; all vectors in camera space, the eye at its origin.
+struct Ball {
+    clip_from_view: DMat4,
+    view_from_model: DMat4,
+    normals: DMat3,
+    frequency: Frequency,
+    material: Material,
+    color: [f64; 3],
+    to_light: [f64; 3],
+}
+
+impl Ball {
+    fn light<R: Real>(&self, view: [R; 3], normal: [R; 3]) -> [R; 3] {
+        let to_eye = normalize(view.map(|coordinate| -coordinate));
+        self.material.shade(self.color.map(R::of), normalize(normal), self.to_light.map(R::of), to_eye)
+    }
+}
+
+impl Shader<6> for Ball {
+    type Attributes = Corner;
+
+    fn vertex(&self, corner: &Corner) -> ClipVertex<6> {
+        let view = self.view_from_model * corner.position.extend(1.0);
+        let normal = self.normals * corner.normal;
+        let (view3, normal) = (view.truncate().to_array(), normal.to_array());
+        let varyings = match self.frequency {
+            Frequency::Vertex => {
+                let [r, g, b] = self.light(view3, normal);
+                [r, g, b, 0.0, 0.0, 0.0]
+            }
+            Frequency::Fragment => [view3[0], view3[1], view3[2], normal[0], normal[1], normal[2]],
+        };
+        ClipVertex { position: self.clip_from_view * view, varyings }
+    }
+
+    fn fragment<R: Real>(&self, [a, b, c, nx, ny, nz]: [R; 6]) -> Shaded<R> {
+        Shaded::opaque(match self.frequency {
+            Frequency::Vertex => [a, b, c],
+            Frequency::Fragment => self.light([a, b, c], [nx, ny, nz]),
+        })
+    }
+}
+// ANCHOR_END: frequency
+
+const CAMERA: Frustum = Frustum { left: -1.6, right: 1.6, bottom: -1.2, top: 1.2, near: 2.0, far: 20.0 };
+const SHINY: Material =
+    Material { ambient: 0.15, diffuse: 0.65, specular: 0.7, exponent: 24.0, highlight: Highlight::Phong };
+const CORAL: [f64; 3] = [215.0, 90.0, 70.0];
+const TEAL: [f64; 3] = [60.0, 140.0, 150.0];
+
+fn state() -> RenderState {
+    RenderState { cull: CullMode::Back, clear_color: Color::gray(28), ..RenderState::default() }
+}
+
+/// A ball of some material at a place, which is its middle in camera space, and its radius.
+fn ball_at(place: DVec3, radius: f64, color: [f64; 3], frequency: Frequency, material: Material) -> Ball {
+    let view_from_model = translate(place) * scale(DVec3::splat(radius));
+    Ball {
+        clip_from_view: CAMERA.matrix(),
+        view_from_model,
+        normals: normal_matrix(view_from_model),
+        frequency,
+        material,
+        color,
+        to_light: normalize([-0.5, 0.75, -0.9]),
+    }
+}
+
+/// A coarse ball on the left and a fine one on the right.
+fn two_balls(canvas: &mut Canvas, frequency: Frequency, is_faceted: bool) {
+    canvas.clear(&state());
+    for (x, color, rings, segments) in [(-1.55, CORAL, 7, 10), (1.55, TEAL, 24, 36)] {
+        let mesh = ball(rings, segments);
+        let mesh = if is_faceted { faceted(&mesh) } else { mesh };
+        canvas.draw(&mesh, &ball_at(dvec3(x, 0.0, 5.0), 1.4, color, frequency, SHINY), &state());
+    }
+}
+
+/// The normals of the faces.
+pub(super) fn flat(canvas: &mut Canvas) {
+    two_balls(canvas, Frequency::Vertex, true);
+}
+
+/// Light at the corners.
+pub(super) fn gouraud(canvas: &mut Canvas) {
+    two_balls(canvas, Frequency::Vertex, false);
+}
+
+/// Light at every pixel.
+pub(super) fn phong(canvas: &mut Canvas) {
+    highlights(canvas, Highlight::Phong);
+}
+
+/// The same with the half vector.
+pub(super) fn blinn_phong(canvas: &mut Canvas) {
+    highlights(canvas, Highlight::BlinnPhong);
+}
+
+// ANCHOR: highlights
+/// Above, a coarse and a fine ball; below, a dull floor-like ball under light from behind, with a broad highlight.
+fn highlights(canvas: &mut Canvas, highlight: Highlight) {
+    canvas.clear(&state());
+    let shiny = Material { highlight, ..SHINY };
+    for (x, color, rings, segments) in [(-1.55, CORAL, 7, 10), (1.55, TEAL, 24, 36)] {
+        let shader = ball_at(dvec3(x, 1.0, 6.0), 1.35, color, Frequency::Fragment, shiny);
+        canvas.draw(&ball(rings, segments), &shader, &state());
+    }
+    // The flattened ball below is so large that we see a slope of it, and the light comes low from behind us.
+    let broad = Material { ambient: 0.05, diffuse: 0.25, specular: 0.8, exponent: 1.5, highlight };
+    let view_from_model = translate(dvec3(0.0, -2.2, 6.0)) * scale(dvec3(3.2, 1.2, 2.0));
+    let grazing = Ball {
+        view_from_model,
+        normals: normal_matrix(view_from_model),
+        to_light: normalize([-0.9, 0.25, -0.6]),
+        ..ball_at(DVec3::ZERO, 1.0, [120.0, 120.0, 130.0], Frequency::Fragment, broad)
+    };
+    canvas.draw(&ball(40, 60), &grazing, &state());
+}
+// ANCHOR_END: highlights
+
+// ANCHOR: normals
+/// A flattened, tilted ball; `normals` makes of the model matrix what turns its normals.
+fn flattened(canvas: &mut Canvas, normals: impl Fn(DMat4) -> DMat3) {
+    canvas.clear(&state());
+    let dull = Material { highlight: Highlight::None, ambient: 0.15, diffuse: 0.85, ..SHINY };
+    let tilt = rotate_x_to_y(degrees(15.0));
+    let view_from_model = translate(dvec3(0.0, 0.0, 5.0)) * tilt * scale(dvec3(2.3, 0.55, 1.6));
+    let shader = Ball {
+        view_from_model,
+        normals: normals(view_from_model),
+        to_light: normalize([-0.2, 1.0, -0.5]),
+        ..ball_at(DVec3::ZERO, 1.0, [225.0, 190.0, 120.0], Frequency::Fragment, dull)
+    };
+    canvas.draw(&ball(40, 60), &shader, &state());
+}
+
+/// By the inverse transpose.
+pub(super) fn normals(canvas: &mut Canvas) {
+    flattened(canvas, normal_matrix);
+}
+
+/// By the model matrix, a mistake under a scale that is not the same in all directions.
+pub(super) fn normals_wrong(canvas: &mut Canvas) {
+    flattened(canvas, DMat3::from_mat4);
+}
+// ANCHOR_END: normals

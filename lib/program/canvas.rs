@@ -1,0 +1,107 @@
+//! What the figures of the later chapters draw on: a target, and the pipeline laid into the middle of it.
+
+use super::Failure;
+use crate::depth::Target;
+use crate::mesh::Mesh;
+use crate::model::{Model, Part};
+use crate::pipeline::{RenderState, draw};
+use crate::probe::Silent;
+use crate::raster::Scanline;
+use crate::shader::Shader;
+use crate::texture::Texture;
+use crate::transform::Viewport;
+use crate::{Color, Framebuffer};
+
+/// A picture in the making.
+#[derive(Clone, Debug)]
+pub struct Canvas {
+    /// What is drawn into; it comes uncleared.
+    pub target: Target,
+    /// The number of the frame, 0 if the picture is no animation.
+    pub frame: u32,
+    aspect: f64,
+}
+
+impl Canvas {
+    /// A canvas of some size for a scene that is made for a picture of the proportions of `native`.
+    pub(super) fn new((width, height): (u32, u32), native: (u32, u32), frame: u32) -> Self {
+        let aspect = f64::from(native.0) / f64::from(native.1);
+        Self { target: Target::new(width, height), frame, aspect }
+    }
+
+    pub(super) fn into_picture(self) -> Framebuffer {
+        self.target.color
+    }
+
+    /// Where the scene is: as large as it fits, its proportions kept.
+    #[must_use]
+    pub fn viewport(&self) -> Viewport {
+        Viewport::fitting(self.target.color.rect(), self.aspect)
+    }
+
+    /// One of `count` panels side by side, counted from the left.
+    #[must_use]
+    pub fn panel(&self, index: u32, count: u32) -> Viewport {
+        let whole = self.viewport();
+        let width = whole.width / f64::from(count);
+        Viewport { x: whole.x + width * f64::from(index), width, ..whole }
+    }
+
+    /// Gives all pixels the color and the depth that the state names.
+    pub fn clear(&mut self, state: &RenderState) {
+        self.target.clear(state.clear_color, state.clear_depth);
+    }
+
+    // ANCHOR: draw
+    /// Draws a mesh with the pipeline, into the viewport of the state or else into that of the canvas.
+    pub fn draw<S: Shader<N>, const N: usize>(
+        &mut self,
+        mesh: &Mesh<S::Attributes>,
+        shader: &S,
+        state: &RenderState,
+    ) {
+        let viewport = Some(state.viewport.unwrap_or_else(|| self.viewport()));
+        draw(mesh, shader, &RenderState { viewport, ..*state }, &Scanline, &mut self.target, &Silent);
+    }
+    // ANCHOR_END: draw
+
+    /// Clears, then draws a mesh.
+    pub fn render<S: Shader<N>, const N: usize>(
+        &mut self,
+        mesh: &Mesh<S::Attributes>,
+        shader: &S,
+        state: &RenderState,
+    ) {
+        self.clear(state);
+        self.draw(mesh, shader, state);
+    }
+}
+
+/// What a picture is of: a model and how it is covered.
+#[derive(Clone, Debug)]
+pub struct Subject {
+    /// The model, about (0, 0, 4).
+    pub model: Model,
+    /// The texture that was given; it covers what the model's file says.
+    pub texture: Option<Texture>,
+}
+
+impl Subject {
+    /// A model of `assets/` with a texture of `assets/`.
+    ///
+    /// # Errors
+    /// If there are no such files.
+    pub fn of_assets(model: &str, texture: &str) -> Result<Self, Failure> {
+        let failure = |error: crate::model::FileError| Failure::Runtime(error.to_string());
+        let model = super::assets::model(model).map_err(failure)?;
+        let texture = super::assets::texture(texture).map_err(failure)?;
+        Ok(Self { model, texture: Some(texture) })
+    }
+
+    /// The texture of a part: the one that was given, or its material's, or plain gray.
+    #[must_use]
+    pub fn texture_of(&self, part: &Part) -> Texture {
+        let given = self.texture.as_ref().or(part.texture.as_ref());
+        given.cloned().unwrap_or_else(|| Texture::new(1, 1, vec![Color::gray(200)]))
+    }
+}
