@@ -23,16 +23,16 @@ pub(crate) const CHAPTER: Chapter = Chapter {
     name: "ch10_matrices_lighting",
     question: "How does a thing get its place, and its light and shade?",
     variants: &[
-        Variant::of_model("lit", lit::lit, ["pawn.obj", "wood.png"], "a model turns in the light: bright where it faces the light, never black (ambient light)")
+        Variant::of_model("lit", lit::lit, ["pawn.obj", "wood.png"], "a model turns in the light: bright where it faces the light, never black; the few black specks are seams that this rasterizer leaves open")
             .source("sections 11.1 to 11.3").animated(TURN),
         Variant::with_pipeline("rotation", matrices::rotation, "a triangle turns about an upright axis, a degree a frame; it vanishes when we see its back")
             .source("section 10.6").animated(TURN),
         Variant::with_pipeline("pivot", matrices::pivot, "nine steps of a quarter turn, dark to bright: left about the origin (the white dot), right about the arrow's own middle")
             .source("section 10.5").size(800, 400),
         Variant::with_pipeline("camera", matrices::camera, "two boxes, a ball and a pawn on a wall's bricks, seen from the upper right by a look-at matrix: what is upright stays upright"),
-        Variant::of_model("spikes", lit::spikes, ["sphere.obj", "numbers.png"], "colored specks along the triangles' edges: texels from beyond them, fetched with t past an edge's end; try --zoom 8")
+        Variant::of_model("spikes", lit::spikes, ["sphere.obj", "numbers.png"], "short dashes of wrong color on the ball: texels from beyond a triangle, fetched with t past an edge's end; try --zoom 4 --compare")
             .source("section 11.4").animated(TURN).mended_by("spikes-fixed"),
-        Variant::of_model("spikes-fixed", lit::lit, ["sphere.obj", "numbers.png"], "the same ball with t limited on the edges: nearly all specks are gone")
+        Variant::of_model("spikes-fixed", lit::lit, ["sphere.obj", "numbers.png"], "the same ball with t limited on the edges: nearly all dashes are gone")
             .source("section 11.4").animated(TURN),
         Variant::with_pipeline("normals-wrong", shading::normals_wrong, "a flattened ball, its normals turned by the model matrix: they lean to the sides, and the light does not fit the shape")
             .mended_by("normals"),

@@ -168,7 +168,7 @@ pub(super) fn camera(canvas: &mut Canvas) {
         ("cube.obj", "letters.png", DVec3::splat(0.8), dvec3(-1.9, 0.8, 1.6), 1.0),
         ("cube.obj", "wood.png", dvec3(0.5, 1.3, 0.5), dvec3(1.7, 1.3, 2.2), 1.0),
         ("sphere.obj", "numbers.png", DVec3::splat(0.9), dvec3(1.6, 0.9, -1.4), 1.0),
-        ("pawn.obj", "wood.png", DVec3::splat(1.3), dvec3(-1.3, 1.3, -1.6), 1.0),
+        ("pawn.obj", "wood.png", DVec3::splat(0.9), dvec3(-1.3, 1.26, -1.6), 1.0),
     ];
     for (model, texture, size, place, repeat) in things {
         let (Ok(model), Ok(texture)) = (assets::model(model), assets::texture(texture)) else { continue };

@@ -176,7 +176,7 @@ fn highlights(canvas: &mut Canvas, highlight: Highlight) {
         canvas.draw(&ball(rings, segments), &shader, &state());
     }
     // The flattened ball below is so large that we see a slope of it, and the light comes low from behind us.
-    let broad = Material { ambient: 0.05, diffuse: 0.25, specular: 0.8, exponent: 1.5, highlight };
+    let broad = Material { ambient: 0.05, diffuse: 0.25, specular: 0.8, exponent: 0.5, highlight };
     let view_from_model = translate(dvec3(0.0, -2.2, 6.0)) * scale(dvec3(3.2, 1.2, 2.0));
     let grazing = Ball {
         view_from_model,

@@ -92,19 +92,19 @@ fn cube() -> String {
     text
 }
 
-/// A sphere of radius 1 about (0, 0, −4): 50 rings of 50 quads.
+/// A sphere of radius 1 about (0, 0, −4): 40 rings of 64 quads.
 fn sphere() -> String {
-    const RINGS: usize = 50;
+    const RINGS: usize = 40;
     let profile: Vec<[f64; 2]> = (0..=RINGS)
         .map(|ring| {
             let angle = PI * ring as f64 / RINGS as f64;
             [libm::sin(angle), -libm::cos(angle)]
         })
         .collect();
-    lathe("A sphere", "sphere", &profile, 50)
+    lathe("A sphere", "sphere", &profile, 64)
 }
 
-/// A pawn of height 2 about (0, 0, −4): a smooth outline, turned about its axis.
+/// A pawn of height 2.8 about (0, 0, −4): a smooth outline, turned about its axis.
 fn pawn() -> String {
     // Outline from the foot to the top: distance from the axis, height.
     const OUTLINE: [[f64; 2]; 21] = [
@@ -130,7 +130,8 @@ fn pawn() -> String {
         [0.13, 0.985],
         [0.0, 1.0],
     ];
-    lathe("A pawn", "pawn", &smoothed(&OUTLINE, 3), 40)
+    let outline = smoothed(&OUTLINE, 3).into_iter().map(|[radius, height]| [1.404 * radius, 1.404 * height]);
+    lathe("A pawn", "pawn", &outline.collect::<Vec<_>>(), 40)
 }
 
 /// A curve through all points of an outline (Catmull and Rom, 1974), `steps` points for each of its pieces.
@@ -239,13 +240,18 @@ const DIGITS: [[&str; 5]; 10] = [
     ["###", "#.#", "###", "..#", "###"],
 ];
 
-/// 64 colored squares, numbered from 1 at the lower left.
+/// 64 colored and checkered squares, numbered from 1 at the lower left.
 fn numbers() -> Framebuffer {
     let mut small = Framebuffer::new(128, 128);
     for i in 0..64 {
         let (left, bottom) = (16 * (i % 8), 16 * (i / 8));
         let color = hue((i * 23 % 64) as f64 / 64.0);
-        small.fill(Rect { left, bottom, right: left + 16, top: bottom + 16 }, color);
+        small.fill(Rect { left, bottom, right: left + 16, top: bottom + 16 }, Color::gray(20));
+        // A fine checkerboard, so that a texel from elsewhere shows.
+        let dark = Color::truncated(color.to_f64().map(|channel| channel * 0.72));
+        for (x, y) in (0..15).flat_map(|y| (0..15).map(move |x| (x, y))) {
+            small.set(left + x, bottom + y, if (x / 3 + y / 3) % 2 == 0 { color } else { dark });
+        }
         let number = i + 1;
         let digits = if number < 10 { vec![(6, number)] } else { vec![(4, number / 10), (9, number % 10)] };
         for (place, digit) in digits {

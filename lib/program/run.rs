@@ -120,6 +120,7 @@ const PLACE: (DVec3, f64) = (DVec3::new(0.0, 0.0, 4.0), 1.7);
 fn subject_of(own: Subject, request: &Request) -> Result<Subject, Failure> {
     let failure = |error: FileError| Failure::Runtime(error.to_string());
     let mut warnings = Vec::new();
+    // The chapters' own models are where they should be.
     let (model, own_texture) = match &request.model {
         None => (own.model, own.texture),
         Some(path) => {
@@ -131,7 +132,7 @@ fn subject_of(own: Subject, request: &Request) -> Result<Subject, Failure> {
             progress.finish_and_clear();
             let (model, more) = loaded.map_err(failure)?;
             warnings.extend(more);
-            (model, None)
+            (if request.as_is { model } else { model.fitted(PLACE.0, PLACE.1) }, None)
         }
     };
     let texture = match &request.texture {
@@ -145,7 +146,6 @@ fn subject_of(own: Subject, request: &Request) -> Result<Subject, Failure> {
     for warning in warnings {
         note(&format!("warning: {warning}"));
     }
-    let model = if request.as_is { model } else { model.fitted(PLACE.0, PLACE.1) };
     Ok(Subject { model, texture })
 }
 
