@@ -21,6 +21,7 @@ const TESTED: &[&str] = &[
     "behind",
     "divide-first",
     "tearing",
+    "normals-wrong",
 ];
 
 #[test]
@@ -212,4 +213,25 @@ fn pictures_that_are_claimed_to_be_equal_are() {
     assert!(clipped == draw("ch09_pipeline", "vbo"));
     let [ccw, cw, none] = ["cull-ccw", "cull-cw", "cull-none"].map(|name| draw("ch09_pipeline", name));
     assert!(ccw != cw && cw != none && none != ccw);
+}
+
+#[test]
+fn texels_from_beyond_a_triangle_show_on_the_ball() {
+    let [wrong, mended] = ["spikes", "spikes-fixed"].map(|name| draw("ch10_matrices_lighting", name));
+    let is_other =
+        |a: Color, b: Color| a.channels().iter().zip(b.channels()).any(|(a, b)| a.abs_diff(b) > 60);
+    let strong = count(&wrong, |x, y, color| is_other(color, mended.get(x, y).expect("inside")));
+    assert!(strong > 80, "{strong} pixels of plainly another color");
+}
+
+#[test]
+fn light_on_wrong_normals_does_not_fit_the_shape() {
+    // The ball is tilted by 15° and lit from above: right, its upper half is bright and its lower half dark.
+    let [wrong, right] = ["normals-wrong", "normals"].map(|name| draw("ch10_matrices_lighting", name));
+    let contrast = |picture: &Framebuffer| {
+        let at = |dy: i32| f64::from(picture.get(320, 240 + dy).expect("inside").channels()[0]);
+        at(30) - at(-30)
+    };
+    assert!(contrast(&right) > 100.0, "{}", contrast(&right));
+    assert!(contrast(&wrong) < 0.6 * contrast(&right), "{}", contrast(&wrong));
 }

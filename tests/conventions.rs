@@ -1,14 +1,25 @@
 //! The lines of the page on conventions that no unit test beside the code holds already.
 
+use std::cell::RefCell;
 use std::collections::BTreeSet;
 
-use glam::{DVec2, dvec2, dvec3};
-use rasterbook::Rect;
+use glam::{DVec2, DVec4, dvec2, dvec3, dvec4};
+use rasterbook::clip::{ClipTest, ClipVertex, ClipVolume, DepthRange, NdcVertex, Plane, clip_triangle, fan};
+use rasterbook::cull::CullMode;
+use rasterbook::depth::{DepthBuffer, DepthTest, Target};
 use rasterbook::interpolate::{Interpolation, Projected, step_values};
 use rasterbook::line::{StepAxis, dda};
+use rasterbook::merge::Merge;
+use rasterbook::mesh::Mesh;
+use rasterbook::pipeline::{RenderState, draw};
+use rasterbook::probe::{FragmentEvent, Probe};
+use rasterbook::raster::Scanline;
+use rasterbook::real::Real;
 use rasterbook::scanline::{Corner, EdgeWalk, Payload, StepLimit, Walk, split};
+use rasterbook::shader::{Shaded, Shader};
 use rasterbook::texture::AddressMode;
 use rasterbook::transform::{perspective, perspective_divide};
+use rasterbook::{Color, Rect};
 
 const WINDOW: Rect = Rect::sized(400, 400);
 
@@ -110,10 +121,156 @@ fn the_default_of_every_option() {
     assert_eq!(StepLimit::default(), StepLimit::Edges, "the book's remedy");
     assert_eq!(Interpolation::default(), Interpolation::PerspectiveCorrect);
     assert_eq!(AddressMode::default(), AddressMode::Clamp);
-    let state = rasterbook::pipeline::RenderState::default();
-    assert_eq!(state.clip_volume, rasterbook::clip::ClipVolume::Canonical);
-    assert_eq!(state.clip_test, rasterbook::clip::ClipTest::BeforeDivide);
-    assert_eq!(state.depth_range, rasterbook::clip::DepthRange::NegativeOneToOne);
+    let state = RenderState::default();
+    assert_eq!(state.clip_volume, ClipVolume::Canonical);
+    assert_eq!(state.clip_test, ClipTest::BeforeDivide);
+    assert_eq!(state.depth_range, DepthRange::NegativeOneToOne);
     assert_eq!(state.front_face, rasterbook::area::Winding::CounterClockwise);
-    assert_eq!(state.merge.depth_test, rasterbook::depth::DepthTest::LessOrEqual);
+    assert_eq!(state.merge.depth_test, DepthTest::LessOrEqual);
+}
+
+fn clip_vertex(position: DVec4) -> ClipVertex<0> {
+    ClipVertex { position, varyings: [] }
+}
+
+#[test]
+fn a_point_on_a_clip_plane_is_inside() {
+    let on_the_borders =
+        [dvec4(-1.0, -1.0, 1.0, 1.0), dvec4(1.0, -1.0, 0.0, 1.0), dvec4(1.0, 1.0, 1.0, 1.0)].map(clip_vertex);
+    for planes in [Plane::CANONICAL, Plane::ZERO_TO_ONE] {
+        let touched = planes
+            .iter()
+            .filter(|plane| on_the_borders.iter().any(|v| plane.signed_distance(v.position) == 0.0));
+        assert!(touched.count() >= 5);
+        assert_eq!(clip_triangle(on_the_borders, &planes, ClipTest::BeforeDivide).as_slice(), on_the_borders);
+    }
+}
+
+#[test]
+fn clip_planes_come_in_the_order_of_the_book() {
+    let [left, right, bottom, top, far] = [Plane::LEFT, Plane::RIGHT, Plane::BOTTOM, Plane::TOP, Plane::FAR];
+    let canonical = ClipVolume::Canonical.planes(DepthRange::NegativeOneToOne);
+    assert_eq!(canonical.as_slice(), [left, right, bottom, top, Plane::NEAR, far]);
+    let other = ClipVolume::Canonical.planes(DepthRange::ZeroToOne);
+    assert_eq!(other.as_slice(), [left, right, bottom, top, Plane::NEAR_ZERO, far]);
+}
+
+#[test]
+fn a_fan_begins_at_the_first_corner() {
+    let polygon: arrayvec::ArrayVec<char, 4> = ['a', 'b', 'c', 'd'].into();
+    assert_eq!(fan(polygon).collect::<Vec<_>>(), [['a', 'b', 'c'], ['a', 'c', 'd']]);
+}
+
+/// Flat colors on triangles that are given in clip space.
+struct Flat;
+
+impl Shader<3> for Flat {
+    type Attributes = (DVec4, [f64; 3]);
+
+    fn vertex(&self, &(position, color): &Self::Attributes) -> ClipVertex<3> {
+        ClipVertex { position, varyings: color }
+    }
+
+    fn fragment<R: Real>(&self, color: [R; 3]) -> Shaded<R> {
+        Shaded::opaque(color)
+    }
+}
+
+/// Hears the pixel and the color of every fragment, and how many pieces were culled.
+#[derive(Default)]
+struct Heard {
+    fragments: RefCell<Vec<(i32, i32, [f64; 4])>>,
+    pieces: RefCell<usize>,
+    culled: RefCell<usize>,
+}
+
+impl Probe for Heard {
+    fn piece<const N: usize>(&self, _: &[NdcVertex<N>; 3], _: f64) {
+        *self.pieces.borrow_mut() += 1;
+    }
+
+    fn culled(&self) {
+        *self.culled.borrow_mut() += 1;
+    }
+
+    fn fragment(&self, event: &FragmentEvent<'_>) {
+        self.fragments.borrow_mut().push((event.x, event.y, event.color));
+    }
+}
+
+const RED: [f64; 3] = [255.0, 0.0, 0.0];
+const GREEN: [f64; 3] = [0.0, 255.0, 0.0];
+
+fn listen(triangles: &[([(f64, f64); 3], [f64; 3])], state: &RenderState) -> (Target, Heard) {
+    let corners =
+        triangles.iter().flat_map(|(corners, color)| corners.map(|(x, y)| (dvec4(x, y, 0.0, 1.0), *color)));
+    let mesh = Mesh::unindexed(corners.collect()).expect("whole triangles");
+    let mut target = Target::new(9, 9);
+    target.clear(state.clear_color, state.clear_depth);
+    let heard = Heard::default();
+    draw(&mesh, &Flat, state, &Scanline, &mut target, &heard);
+    (target, heard)
+}
+
+const TRIANGLE: [(f64, f64); 3] = [(-0.75, -0.75), (0.75, -0.75), (-0.75, 0.75)];
+const REVERSED: [(f64, f64); 3] = [(-0.75, -0.75), (-0.75, 0.75), (0.75, -0.75)];
+
+#[test]
+fn the_front_runs_counter_clockwise() {
+    let drawn = |corners, cull| {
+        let state = RenderState { cull, ..RenderState::default() };
+        !listen(&[(corners, RED)], &state).1.fragments.borrow().is_empty()
+    };
+    assert!(drawn(TRIANGLE, CullMode::Back) && !drawn(REVERSED, CullMode::Back));
+    assert_eq!(RenderState::default().cull, CullMode::None);
+    assert!(drawn(TRIANGLE, CullMode::None) && drawn(REVERSED, CullMode::None));
+}
+
+#[test]
+fn a_triangle_without_area_is_always_left_out() {
+    let tiny = 3e-8;
+    for corners in
+        [[(-0.5, -0.5), (0.0, 0.0), (0.5, 0.5)], [(0.0, 0.0), (tiny, 0.0), (0.0, tiny)], [(0.1, 0.1); 3]]
+    {
+        for cull in [CullMode::None, CullMode::Back, CullMode::Front] {
+            let (_, heard) = listen(&[(corners, RED)], &RenderState { cull, ..RenderState::default() });
+            assert!(heard.fragments.borrow().is_empty(), "{corners:?}");
+            assert_eq!((*heard.pieces.borrow(), *heard.culled.borrow()), (1, 1));
+        }
+    }
+}
+
+#[test]
+fn of_equal_depths_the_later_is_seen() {
+    let color = |depth_test| {
+        let merge = Merge { depth_test, ..Merge::default() };
+        let (target, _) =
+            listen(&[(TRIANGLE, RED), (TRIANGLE, GREEN)], &RenderState { merge, ..RenderState::default() });
+        target.color.get(2, 2)
+    };
+    assert_eq!(color(DepthTest::LessOrEqual), Some(Color::GREEN));
+    assert_eq!(color(DepthTest::Less), Some(Color::RED));
+}
+
+#[test]
+fn a_target_is_cleared_to_black_and_the_far_plane() {
+    let state = RenderState::default();
+    assert_eq!((state.clear_color, state.clear_depth), (Color::BLACK, 1.0));
+    assert_eq!(DepthBuffer::new(2, 2).get(1, 1), Some(0.0), "not cleared yet");
+}
+
+#[test]
+fn fragments_arrive_in_the_order_of_the_triangles() {
+    let (_, heard) = listen(&[(TRIANGLE, RED), (REVERSED, GREEN)], &RenderState::default());
+    let fragments = heard.fragments.borrow();
+    let first_green = fragments.iter().position(|fragment| fragment.2[1] == 255.0).expect("a green one");
+    assert!(fragments[..first_green].iter().all(|fragment| fragment.2[0] == 255.0));
+    assert!(fragments[first_green..].iter().all(|fragment| fragment.2[1] == 255.0));
+    // Within a triangle rows go up, and columns to the right.
+    let places: Vec<(i32, i32)> = fragments[..first_green].iter().map(|&(x, y, _)| (y, x)).collect();
+    assert!(places.is_sorted());
+
+    // A triangle that is cut at the right border: its pieces come in the order of the fan.
+    let (_, heard) = listen(&[([(-0.5, -0.5), (2.0, 0.0), (-0.5, 0.5)], RED)], &RenderState::default());
+    assert_eq!(*heard.pieces.borrow(), 2);
 }

@@ -11,13 +11,14 @@ use rasterbook::depth::{DepthEncoding, DepthTest, Target};
 use rasterbook::interpolate::Interpolation;
 use rasterbook::merge::{Merge, Verdict};
 use rasterbook::mesh::Mesh;
+use rasterbook::model::ModelVertex;
 use rasterbook::pipeline::{RenderState, draw};
 use rasterbook::probe::{FragmentEvent, Probe, Silent};
 use rasterbook::raster::Scanline;
 use rasterbook::real::Real;
 use rasterbook::scanline::{StepLimit, Walk};
 use rasterbook::shader::{Shaded, Shader};
-use rasterbook::transform::{Frustum, Viewport};
+use rasterbook::transform::{Frustum, Viewport, about, rotate_x_to_y, rotate_z_to_y};
 use rasterbook::{Color, Framebuffer, Rect};
 
 const VIEW: Frustum = Frustum { left: -1.0, right: 1.0, bottom: -0.75, top: 0.75, near: 1.0, far: 20.0 };
@@ -331,4 +332,70 @@ fn the_mistake_of_chapter_five_is_one_option_of_the_pipeline() {
 fn an_empty_mesh_draws_nothing() {
     let target = render(&[], RenderState::default(), &Silent);
     assert!(colors(&target).iter().all(|&color| color == Color::BLACK));
+}
+
+/// The texture coordinates of a ball, and nothing else.
+struct Coordinates;
+
+impl Shader<2> for Coordinates {
+    type Attributes = ModelVertex;
+
+    fn vertex(&self, vertex: &ModelVertex) -> ClipVertex<2> {
+        // Turned, so that edges run in all directions.
+        let turned = about(dvec3(0.0, 0.0, 4.0), rotate_x_to_y(0.785) * rotate_z_to_y(0.785))
+            * vertex.position.extend(1.0);
+        let camera = Frustum { left: -1.6, right: 1.6, bottom: -1.2, top: 1.2, near: 2.0, far: 10.0 };
+        ClipVertex { position: camera.project(turned.truncate()), varyings: vertex.uv }
+    }
+
+    fn fragment<R: Real>(&self, [u, v]: [R; 2]) -> Shaded<R> {
+        Shaded::opaque([u, v, R::of(0.0)])
+    }
+}
+
+/// Counts fragments whose texel lies outside the texels of their own triangle's corners.
+#[derive(Default)]
+struct Strays {
+    range: RefCell<[[f64; 2]; 2]>,
+    count: RefCell<usize>,
+}
+
+impl Probe for Strays {
+    fn piece<const N: usize>(&self, vertices: &[NdcVertex<N>; 3], _: f64) {
+        let of = |k: usize, pick: fn(f64, f64) -> f64| {
+            vertices.iter().map(|v| v.varyings[k]).reduce(pick).unwrap_or_default()
+        };
+        *self.range.borrow_mut() = [[of(0, f64::min), of(1, f64::min)], [of(0, f64::max), of(1, f64::max)]];
+    }
+
+    fn fragment(&self, event: &FragmentEvent<'_>) {
+        // Rounding alone makes no stray: corners lie on the borders of texels.
+        const ROUNDING: f64 = 1e-9;
+        let texel = |coordinate: f64| (coordinate * 512.0).floor();
+        let [low, high] = *self.range.borrow();
+        let is_inside = |k: usize| {
+            let value = event.varyings[k];
+            texel(value + ROUNDING) >= texel(low[k]) && texel(value - ROUNDING) <= texel(high[k])
+        };
+        *self.count.borrow_mut() += usize::from(!(is_inside(0) && is_inside(1)));
+    }
+}
+
+#[test]
+fn spikes_are_texels_from_outside_a_triangle() {
+    let ball = rasterbook::program::assets::model("sphere.obj").expect("an asset");
+    let strays = |limit| {
+        let walk = Walk { limit, ..Walk::default() };
+        let state = RenderState { walk, cull: CullMode::Back, ..RenderState::default() };
+        let mut target = Target::new(640, 480);
+        target.clear(state.clear_color, state.clear_depth);
+        let probe = Strays::default();
+        draw(&ball.parts[0].mesh, &Coordinates, &state, &Scanline, &mut target, &probe);
+        probe.count.into_inner()
+    };
+    let [overrun, edges, everywhere] =
+        [StepLimit::Overrun, StepLimit::Edges, StepLimit::Everywhere].map(strays);
+    assert_eq!(everywhere, 0);
+    assert!(edges > 0, "the ends of rows still pass");
+    assert!(overrun > edges + 1000, "{overrun} without the remedy, {edges} with it");
 }

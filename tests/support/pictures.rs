@@ -27,9 +27,7 @@ pub(crate) fn snapshot_folder() -> PathBuf {
 /// The error says what differs. Then expected | difference | actual is at [`failure_folder`], where a picture that
 /// is accepted again takes it away.
 pub(crate) fn assert_picture(name: &str, png: Vec<u8>) -> Result<(), String> {
-    for kind in ["expected", "actual", "report"] {
-        let _ = std::fs::remove_file(failure_folder().join(format!("{name}.{kind}.png")));
-    }
+    forget(name);
     let comparator = Pixels { name: name.to_owned(), report: Arc::default() };
     let report = Arc::clone(&comparator.report);
 
@@ -43,6 +41,8 @@ pub(crate) fn assert_picture(name: &str, png: Vec<u8>) -> Result<(), String> {
     let asserted =
         catch_unwind(AssertUnwindSafe(|| settings.bind(|| insta::assert_binary_snapshot!(&file, png))));
     if asserted.is_ok() {
+        // With INSTA_UPDATE=always a picture that differs is accepted.
+        forget(name);
         return Ok(());
     }
     let report = report.lock().expect("no other thread").take();
@@ -50,6 +50,13 @@ pub(crate) fn assert_picture(name: &str, png: Vec<u8>) -> Result<(), String> {
         save(name, "actual", &actual);
         format!("{name}: there is no accepted picture yet.\n{HINT}")
     }))
+}
+
+/// Takes the pictures of an earlier failure away.
+fn forget(name: &str) {
+    for kind in ["expected", "actual", "report"] {
+        let _ = std::fs::remove_file(failure_folder().join(format!("{name}.{kind}.png")));
+    }
 }
 
 const HINT: &str = "Look at the pictures in target/tmp/snapshots (review.html shows all of them).\n\

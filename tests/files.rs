@@ -1,0 +1,205 @@
+//! Models and textures from the wild: what is wrong with one is said in a line, with the file's name, and nothing is
+//! written; what is merely odd is a warning.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// An empty folder of its own for one test.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("files").join(name);
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).expect("a folder in target");
+    folder
+}
+
+fn draw(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_ch10_matrices_lighting"))
+        .args(["lit", "--size", "64x48", "--out", "picture.png"])
+        .args(arguments)
+        .current_dir(folder)
+        .output()
+        .expect("the program starts")
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// One line that names the file and the cause, exit code 1, no picture.
+fn refused(name: &str, option: &str, file: &str, content: &[u8], cause: &str) {
+    let folder = folder(name);
+    std::fs::write(folder.join(file), content).expect("written");
+    let output = draw(&folder, &[option, file]);
+    let told = stderr(&output);
+    assert_eq!(output.status.code(), Some(1), "{name}: {told}");
+    assert!(told.starts_with(&format!("error: {file}: ")) && told.contains(cause), "{name}: {told}");
+    assert_eq!(told.lines().count(), 1, "{told}");
+    assert!(output.stdout.is_empty() && !folder.join("picture.png").exists());
+}
+
+/// The picture is drawn; what is said on stderr is given back.
+fn accepted(name: &str, files: &[(&str, &[u8])], arguments: &[&str]) -> String {
+    let folder = folder(name);
+    for (file, content) in files {
+        std::fs::write(folder.join(file), content).expect("written");
+    }
+    let output = draw(&folder, arguments);
+    assert!(output.status.success(), "{name}: {}", stderr(&output));
+    assert!(folder.join("picture.png").is_file());
+    stderr(&output)
+}
+
+const TRIANGLE: &str = "v -1 -1 0\nv 1 -1 0\nv 0 1 0\nf 1 2 3\n";
+
+/// A small picture in some format.
+fn picture(format: image::ImageFormat) -> Vec<u8> {
+    let image = image::RgbImage::from_fn(16, 16, |x, y| image::Rgb([x as u8 * 16, y as u8 * 16, 99]));
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    image.write_to(&mut bytes, format).expect("a small picture");
+    bytes.into_inner()
+}
+
+#[test]
+fn bad_models() {
+    refused("empty", "--model", "a.obj", b"", "no faces");
+    refused("binary", "--model", "a.obj", &[0x89, b'P', b'N', b'G', 0, 1, 2, 3, 0xff], "not text");
+    refused("no_obj", "--model", "a.obj", b"<html><body>404</body></html>\n", "no faces");
+    refused("out_of_range", "--model", "a.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", "out of bounds");
+    refused("far_out_of_range", "--model", "a.obj", b"v 0 0 0\nf 1 4000000000 18446744073709551615\n", "");
+    refused("nan", "--model", "a.obj", b"v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n", "not a finite number");
+    refused("infinite", "--model", "a.obj", b"v 0 0 0\nv inf 0 0\nv 0 1 0\nf 1 2 3\n", "not a finite number");
+    refused("one_vertex", "--model", "a.obj", b"v 0 0 0\nf 1\n", "no faces");
+    refused("index_zero", "--model", "a.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 0 1 2\n", "");
+    refused("words", "--model", "a.obj", b"v one two three\n", "position");
+}
+
+#[test]
+fn missing_files_and_folders() {
+    let folder = folder("missing");
+    std::fs::create_dir(folder.join("folder.obj")).expect("made");
+    std::fs::create_dir(folder.join("folder.png")).expect("made");
+    for arguments in [
+        ["--model", "nowhere.obj"],
+        ["--model", "folder.obj"],
+        ["--texture", "nowhere.png"],
+        ["--texture", "folder.png"],
+    ] {
+        let output = draw(&folder, &arguments);
+        let told = stderr(&output);
+        assert_eq!(output.status.code(), Some(1), "{told}");
+        assert!(
+            told.starts_with(&format!("error: {}: ", arguments[1])) && told.lines().count() == 1,
+            "{told}"
+        );
+        assert!(!folder.join("picture.png").exists());
+    }
+}
+
+#[test]
+fn large_faces_and_long_lines() {
+    let corners: String =
+        (0..10_000).map(|i| format!("v {} {} 0\n", (i % 100) as f64 / 50.0, i / 100)).collect();
+    let face: String = (1..=10_000).map(|i| format!(" {i}")).collect();
+    assert_eq!(
+        accepted(
+            "face_of_10000",
+            &[("a.obj", format!("{corners}f{face}\n").as_bytes())],
+            &["--model", "a.obj"]
+        ),
+        ""
+    );
+    let long = format!("# {}\n{TRIANGLE}", "long ".repeat(2_000_000));
+    assert_eq!(accepted("line_of_10_mb", &[("a.obj", long.as_bytes())], &["--model", "a.obj"]), "");
+}
+
+#[test]
+fn materials() {
+    let text = format!("mtllib colors.mtl\nusemtl red\n{TRIANGLE}");
+    let told = accepted("missing_library", &[("a.obj", text.as_bytes())], &["--model", "a.obj"]);
+    assert!(told.starts_with("warning: a.obj: ") && told.contains("material library"), "{told}");
+
+    let plain = b"newmtl red\nKd 1 0 0\n";
+    assert_eq!(
+        accepted("color", &[("a.obj", text.as_bytes()), ("colors.mtl", plain)], &["--model", "a.obj"]),
+        ""
+    );
+    let drawn = image::open(Path::new(env!("CARGO_TARGET_TMPDIR")).join("files/color/picture.png"))
+        .expect("drawn")
+        .to_rgb8();
+    assert!(
+        drawn.pixels().any(|pixel| pixel[0] > 40 && pixel[1] == 0 && pixel[2] == 0),
+        "Kd colors the triangle"
+    );
+    assert!(drawn.pixels().all(|pixel| pixel[1] == 0));
+
+    let textured = b"newmtl red\nKd 1 0 0\nmap_Kd picture_of_it.png\n";
+    let told = accepted(
+        "missing_map",
+        &[("a.obj", text.as_bytes()), ("colors.mtl", textured)],
+        &["--model", "a.obj"],
+    );
+    assert!(told.starts_with("warning: ") && told.contains("picture_of_it.png"), "{told}");
+    let png = picture(image::ImageFormat::Png);
+    let files =
+        [("a.obj", text.as_bytes()), ("colors.mtl", textured.as_slice()), ("picture_of_it.png", &png)];
+    assert_eq!(accepted("map", &files, &["--model", "a.obj"]), "");
+}
+
+#[test]
+fn bad_textures() {
+    refused("no_bytes", "--texture", "a.png", b"", "empty");
+    let png = picture(image::ImageFormat::Png);
+    refused("truncated", "--texture", "a.png", &png[..png.len() / 2], "");
+    refused("text", "--texture", "a.png", b"this is no picture", "");
+    refused("unknown", "--texture", "a.xyz", b"this is no picture", "no image that can be read here");
+    // A header that claims 100,000 × 100,000 pixels: 30 GB.
+    let mut huge = png;
+    huge[16..24].copy_from_slice(&[0, 1, 0x86, 0xa0, 0, 1, 0x86, 0xa0]);
+    let checksum = crc32(&huge[12..29]);
+    huge[29..33].copy_from_slice(&checksum.to_be_bytes());
+    refused("huge", "--texture", "a.png", &huge, "");
+}
+
+/// The checksum of PNG chunks, bit by bit.
+fn crc32(bytes: &[u8]) -> u32 {
+    !bytes.iter().fold(!0, |crc, &byte| {
+        (0..8).fold(
+            crc ^ u32::from(byte),
+            |crc, _| if crc & 1 == 1 { crc >> 1 ^ 0xEDB8_8320 } else { crc >> 1 },
+        )
+    })
+}
+
+#[test]
+fn every_format_and_a_wrong_name() {
+    use image::ImageFormat::{Bmp, Jpeg, Png, Tga};
+    for (format, name) in [(Png, "a.png"), (Bmp, "a.bmp"), (Tga, "a.tga"), (Jpeg, "a.jpg")] {
+        assert_eq!(accepted(name, &[(name, &picture(format))], &["--texture", name]), "");
+    }
+    let told = accepted("jpeg_called_png", &[("a.png", &picture(Jpeg))], &["--texture", "a.png"]);
+    assert!(told.starts_with("warning: a.png: is a Jpeg file"), "{told}");
+}
+
+#[test]
+fn only_where_a_model_is_drawn() {
+    let folder = folder("no_model");
+    let output = Command::new(env!("CARGO_BIN_EXE_ch10_matrices_lighting"))
+        .args(["pivot", "--model", "a.obj"])
+        .current_dir(&folder)
+        .output()
+        .expect("the program starts");
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).starts_with("error: 'pivot' draws no model"), "{}", stderr(&output));
+}
+
+#[test]
+fn as_is_leaves_a_model_where_it_is() {
+    let triangle = "v 10 10 -4\nv 11 10 -4\nv 10 11 -4\nf 1 2 3\n".as_bytes();
+    let lit = |name, arguments: &[&str]| {
+        accepted(name, &[("a.obj", triangle)], arguments);
+        let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join("files").join(name).join("picture.png");
+        image::open(file).expect("drawn").to_rgb8().pixels().filter(|pixel| pixel.0 != [0; 3]).count()
+    };
+    assert!(lit("fitted", &["--model", "a.obj"]) > 50);
+    assert_eq!(lit("as_is", &["--model", "a.obj", "--as-is"]), 0, "far out of sight");
+}
