@@ -122,6 +122,9 @@ pub struct Material {
 impl Material {
     // ANCHOR: shade
     /// The color (0..=255) of a surface of color `surface` under white light.
+    ///
+    /// As in the note, nothing keeps a broad highlight from reaching a little beyond where the surface turns away from
+    /// the light.
     #[must_use]
     pub fn shade<R: Real>(
         &self,
@@ -136,9 +139,6 @@ impl Material {
             Highlight::Phong => phong(normal, to_light, to_eye, self.exponent),
             Highlight::BlinnPhong => blinn_phong(normal, to_light, to_eye, self.exponent),
         };
-        // No highlight on the side that is turned away from the light.
-        let lit = R::of(0.0).is_less(dot(normal, to_light));
-        let highlight = R::select(lit, highlight, R::of(0.0));
 
         let body = R::of(self.ambient) + R::of(self.diffuse) * diffuse;
         let gloss = R::of(self.specular * 255.0) * highlight;

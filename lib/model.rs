@@ -452,6 +452,19 @@ mod tests {
     }
 
     #[test]
+    fn the_lowest_row_of_an_image_file_is_the_first_of_a_texture() {
+        // Red above green.
+        let image = image::RgbImage::from_fn(1, 2, |_, row| {
+            image::Rgb(if row == 0 { [255, 0, 0] } else { [0, 255, 0] })
+        });
+        let mut bytes = Cursor::new(Vec::new());
+        image.write_to(&mut bytes, ImageFormat::Png).expect("two pixels");
+        let (texture, _) = decode_texture(bytes.get_ref(), "a.png".as_ref()).expect("a picture");
+        let at = |v: f64| Color::truncated(texture.nearest([0.5, v], crate::texture::AddressMode::Clamp));
+        assert_eq!((at(0.25), at(0.75)), (Color::GREEN, Color::RED), "v points up");
+    }
+
+    #[test]
     fn fitting_into_a_sphere() {
         let (model, _) = parse("v 10 0 0\nv 16 0 0\nv 10 8 -2\nf 1 2 3\n").expect("a triangle");
         let fitted = model.fitted(dvec3(0.0, 0.0, 4.0), 1.0);

@@ -1,4 +1,4 @@
-//! Chapter 4: projection, from three dimensions onto the screen.
+//! Chapters 4, 8 and 10: projection, frustum and viewport, matrices: from the model onto the screen.
 //!
 //! Takes points in camera space and gives them in homogeneous coordinates (x, y, z, ω), the first stage of the data
 //! flow; the perspective divide then makes screen coordinates of them.

@@ -201,7 +201,9 @@ impl Probe for Heard {
 const RED: [f64; 3] = [255.0, 0.0, 0.0];
 const GREEN: [f64; 3] = [0.0, 255.0, 0.0];
 
-fn listen(triangles: &[([(f64, f64); 3], [f64; 3])], state: &RenderState) -> (Target, Heard) {
+type FlatTriangle = ([(f64, f64); 3], [f64; 3]);
+
+fn listen(triangles: &[FlatTriangle], state: &RenderState) -> (Target, Heard) {
     let corners =
         triangles.iter().flat_map(|(corners, color)| corners.map(|(x, y)| (dvec4(x, y, 0.0, 1.0), *color)));
     let mesh = Mesh::unindexed(corners.collect()).expect("whole triangles");

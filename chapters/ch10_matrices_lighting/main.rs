@@ -27,9 +27,9 @@ pub(crate) const CHAPTER: Chapter = Chapter {
             .source("sections 11.1 to 11.3").animated(TURN),
         Variant::with_pipeline("rotation", matrices::rotation, "a triangle turns about an upright axis, a degree a frame; it vanishes when we see its back")
             .source("section 10.6").animated(TURN),
-        Variant::with_pipeline("pivot", matrices::pivot, "nine steps of a quarter turn, dark to bright: left about the origin (the white dot), right about the arrow's own middle")
+        Variant::with_pipeline("pivot", matrices::pivot, "nine arrows, each turned by 10° more, dark to bright: left about the origin (the white dot), right about the arrow's own middle")
             .source("section 10.5").size(800, 400),
-        Variant::with_pipeline("camera", matrices::camera, "two boxes, a ball and a pawn on a wall's bricks, seen from the upper right by a look-at matrix: what is upright stays upright"),
+        Variant::with_pipeline("camera", matrices::camera, "two boxes, a ball and a pawn on bricks, seen from the upper right by a look-at matrix: the eye looks down, and upright edges lean outwards"),
         Variant::of_model("spikes", lit::spikes, ["sphere.obj", "numbers.png"], "short dashes of wrong color on the ball: texels from beyond a triangle, fetched with t past an edge's end; try --zoom 4 --compare")
             .source("section 11.4").animated(TURN).mended_by("spikes-fixed"),
         Variant::of_model("spikes-fixed", lit::lit, ["sphere.obj", "numbers.png"], "the same ball with t limited on the edges: nearly all dashes are gone")
@@ -37,10 +37,10 @@ pub(crate) const CHAPTER: Chapter = Chapter {
         Variant::with_pipeline("normals-wrong", shading::normals_wrong, "a flattened ball, its normals turned by the model matrix: they lean to the sides, and the light does not fit the shape")
             .mended_by("normals"),
         Variant::with_pipeline("normals", shading::normals, "the same ball, its normals turned by the inverse transpose: they stand upright on the surface, and the top is bright"),
-        Variant::with_pipeline("flat", shading::flat, "one normal a face: every face of a coarse ball (above) shows, and of a fine one (below) still some"),
-        Variant::with_pipeline("gouraud", shading::gouraud, "light reckoned at the corners: smooth, but the highlight of the coarse ball is a star, and dim"),
-        Variant::with_pipeline("phong", shading::phong, "light reckoned at every pixel: a round highlight on the coarse ball too; at grazing light (below) it ends in a hard edge"),
-        Variant::with_pipeline("blinn-phong", shading::blinn_phong, "the same with the half vector: the highlight at grazing light fades out without an edge"),
+        Variant::with_pipeline("flat", shading::flat, "one normal a face: every face of the coarse ball (left) shows, and of the fine one (right) still many"),
+        Variant::with_pipeline("gouraud", shading::gouraud, "light reckoned at the corners: smooth, but the highlight of the coarse ball has corners of its own"),
+        Variant::with_pipeline("phong", shading::phong, "light reckoned at every pixel: a round highlight on the coarse ball too; the broad one below ends in a hard edge"),
+        Variant::with_pipeline("blinn-phong", shading::blinn_phong, "the same with the half vector: the broad highlight below has no edge within the lit side"),
         Variant::with_pipeline("nearest", textures::nearest, "a brick floor to the horizon, the nearest texel for each pixel: it flickers and breaks up far away"),
     ],
 };

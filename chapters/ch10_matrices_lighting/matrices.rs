@@ -87,7 +87,7 @@ const ARROW: [[f64; 2]; 9] = [
 ];
 
 // ANCHOR: pivot
-/// An arrow in steps of a tenth of a right angle: about the origin on the left, about its middle on the right.
+/// An arrow, turned in steps of 10°: about the origin on the left, about its middle on the right.
 pub(super) fn pivot(canvas: &mut Canvas) {
     let state = RenderState::default();
     canvas.clear(&state);

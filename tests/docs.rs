@@ -1,0 +1,161 @@
+//! The pages in `docs/` and the README cannot drift: what they include, show, name and link to exists.
+
+#[path = "support/chapters.rs"]
+mod chapters;
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use chapters::CHAPTERS;
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// All files below a folder that end so.
+fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
+    let mut found = Vec::new();
+    for path in entries.map(|entry| entry.expect("an entry").path()) {
+        if path.is_dir() {
+            found.extend(files(&path, extension));
+        } else if path.extension().is_some_and(|it| it == extension) {
+            found.push(path);
+        }
+    }
+    found.sort();
+    found
+}
+
+fn read(path: &Path) -> String {
+    fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// The pages: the README and everything in docs/src.
+fn pages() -> Vec<PathBuf> {
+    let mut pages = files(&root().join("docs/src"), "md");
+    pages.push(root().join("README.md"));
+    pages
+}
+
+/// The parts of a text between a beginning and an end.
+fn between<'a>(text: &'a str, begin: &'a str, end: &'a str) -> impl Iterator<Item = &'a str> {
+    text.split(begin).skip(1).filter_map(move |rest| rest.split_once(end).map(|(part, _)| part))
+}
+
+#[test]
+fn every_include_has_its_anchor_and_every_anchor_its_page() {
+    let sources: Vec<PathBuf> =
+        [files(&root().join("lib"), "rs"), files(&root().join("chapters"), "rs")].concat();
+    let mut unused: BTreeSet<(PathBuf, String)> = BTreeSet::new();
+    for source in &sources {
+        let text = read(source);
+        for anchor in between(&text, "// ANCHOR: ", "\n") {
+            assert!(
+                text.contains(&format!("// ANCHOR_END: {anchor}\n")),
+                "{}: {anchor} has no end",
+                source.display()
+            );
+            unused.insert((source.clone(), anchor.to_owned()));
+        }
+    }
+    let known = unused.clone();
+    for page in pages() {
+        let text = read(&page);
+        for include in between(&text, "{{#include ", "}}") {
+            let (file, anchor) =
+                include.split_once(':').unwrap_or_else(|| panic!("{include} names no anchor"));
+            let file = page.parent().expect("a folder").join(file);
+            let file =
+                file.canonicalize().unwrap_or_else(|error| panic!("{}: {include}: {error}", page.display()));
+            let key = known
+                .iter()
+                .find(|(source, name)| name == anchor && source.canonicalize().ok().as_ref() == Some(&file));
+            let key = key.unwrap_or_else(|| panic!("{}: no anchor for {include}", page.display()));
+            unused.remove(key);
+        }
+        // Code in pages is included, never pasted.
+        for block in between(&text, "```rust", "```") {
+            assert!(block.contains("{{#include "), "{}: pasted Rust:{block}", page.display());
+        }
+    }
+    assert!(unused.is_empty(), "anchors that no page includes: {unused:?}");
+}
+
+#[test]
+fn every_picture_and_every_link_exists() {
+    for page in pages() {
+        let text = read(&page);
+        let images = between(&text, "src=\"", "\"");
+        for target in between(&text, "](", ")").chain(images) {
+            let target = target.split(['#', ' ']).next().unwrap_or_default();
+            if target.is_empty() || target.starts_with("https://") {
+                continue;
+            }
+            let path = page.parent().expect("a folder").join(target);
+            assert!(path.exists(), "{}: {target} does not exist", page.display());
+            assert!(!target.ends_with(".png") || target.ends_with(".snap.png"), "{target} is no snapshot");
+        }
+    }
+}
+
+#[test]
+fn every_program_and_every_variant_has_its_line() {
+    let readme = read(&root().join("README.md"));
+    let summary = read(&root().join("docs/src/SUMMARY.md"));
+    for (chapter, _) in CHAPTERS {
+        assert!(readme.contains(&format!("`{}`", chapter.name)), "README: {}", chapter.name);
+        assert!(readme.contains(chapter.question), "README: {}", chapter.question);
+        assert!(summary.contains(&format!("{}.md", chapter.name)), "SUMMARY: {}", chapter.name);
+        let page = read(&root().join(format!("docs/src/{}.md", chapter.name)));
+        for variant in chapter.variants {
+            assert!(page.contains(&format!("`{}`", variant.name)), "{}.md: {}", chapter.name, variant.name);
+        }
+    }
+}
+
+#[test]
+fn every_convention_names_a_test_that_exists() {
+    let sources: String = [files(&root().join("lib"), "rs"), files(&root().join("tests"), "rs")]
+        .concat()
+        .iter()
+        .map(|path| read(path))
+        .collect();
+    let page = read(&root().join("docs/src/conventions.md"));
+    let mut count = 0;
+    for line in page.lines().filter(|line| line.starts_with("| **")) {
+        // `name` in `file`
+        let parts: Vec<&str> = line.split('`').collect();
+        let tests: Vec<&str> =
+            parts.windows(2).filter(|pair| pair[1].starts_with(" in ")).map(|pair| pair[0]).collect();
+        if line.contains("every test in `tests/snapshots.rs`") {
+            continue;
+        }
+        let existing = tests.iter().filter(|name| sources.contains(&format!("fn {name}("))).count();
+        assert!(existing > 0, "no test that exists holds: {line}");
+        count += 1;
+    }
+    assert!(count > 20, "{count} conventions");
+}
+
+#[test]
+fn commands_name_programs_and_variants_that_exist() {
+    let mut count = 0;
+    for page in pages() {
+        for command in between(&read(&page), "cargo run --bin ", "\n") {
+            let command = command.split(['`', '#', '|']).next().unwrap_or_default();
+            let mut words = command.split_whitespace();
+            let program = words.next().unwrap_or_default();
+            let (chapter, _) = CHAPTERS
+                .iter()
+                .find(|(chapter, _)| chapter.name == program)
+                .unwrap_or_else(|| panic!("{}: {command}", page.display()));
+            if let Some(variant) = words.find(|word| *word != "--").filter(|word| !word.starts_with('-')) {
+                assert!(chapter.find(variant).is_some(), "{}: {command}", page.display());
+            }
+            count += 1;
+        }
+    }
+    assert!(count > 15, "{count} commands");
+}
