@@ -9,7 +9,7 @@
 use std::process::ExitCode;
 
 use glam::{DVec2, dvec2, dvec3};
-use rasterbook::depth::{DepthTest, Target, z_from_w};
+use rasterbook::depth::{DepthEncoding, DepthTest, Target, z_from_w};
 use rasterbook::interpolate::{Interpolation, Projected, step_parameter};
 use rasterbook::program::{Chapter, Variant};
 use rasterbook::scanline::{Corner, Walk};
@@ -50,7 +50,7 @@ fn vertex([x, y, z]: [f64; 3], [u, v]: [f64; 2]) -> Corner<Projected<f64, 3>> {
     const NEAR: f64 = 80.0;
     let mut clip = perspective(dvec3(x, y, z), NEAR);
     // So that the divide leaves the depth: z · z / ω = z.
-    clip.z = z * z;
+    clip.z = DepthEncoding::ViewZ.clip_z(z, NEAR, FAR_AWAY);
     let screen = perspective_divide(clip);
     Corner { position: screen.truncate(), attributes: Projected { w: clip.w, values: [u, v, screen.z] } }
 }

@@ -13,7 +13,7 @@ use glam::{DVec4, dvec2, dvec3, dvec4};
 use rasterbook::clip::{
     ClipTest, ClipVertex, ClipVolume, NdcVertex, Plane, clip_polygon, clip_triangle, fan,
 };
-use rasterbook::depth::{DepthTest, Target};
+use rasterbook::depth::{DepthEncoding, DepthTest, Target};
 use rasterbook::interpolate::{Interpolation, Projected, step_parameter_and_depth};
 use rasterbook::line::{StepAxis, dda};
 use rasterbook::program::{Chapter, Variant};
@@ -38,6 +38,9 @@ pub(crate) const CHAPTER: Chapter = Chapter {
             .source("section 7.4, Figure 7-6"),
     ],
 };
+
+/// The depth that the buffer is cleared to: larger than −1/z of anything drawn.
+const FAR_AWAY: f64 = 1000.0;
 
 // ANCHOR: draw
 /// Draws a triangle from clip space: clip, divide, fill with depth test.
@@ -77,7 +80,8 @@ fn draw(
 /// Projects a point. The third component is b = −1, a = 0: after the divide the depth is −1/z.
 fn vertex([x, y, z]: [f64; 3], near: f64, uv: [f64; 2]) -> ClipVertex<2> {
     let clip = perspective(dvec3(x, y, z), near);
-    ClipVertex { position: DVec4 { z: -1.0, ..clip }, varyings: uv }
+    let z = DepthEncoding::Reciprocal.clip_z(z, near, FAR_AWAY);
+    ClipVertex { position: DVec4 { z, ..clip }, varyings: uv }
 }
 // ANCHOR_END: vertex
 
@@ -86,7 +90,7 @@ fn vertex([x, y, z]: [f64; 3], near: f64, uv: [f64; 2]) -> ClipVertex<2> {
 fn walls(framebuffer: &mut Framebuffer, volume: ClipVolume) {
     let corner = |x: f64, y: f64, z: f64| vertex([x, y, z], 9.0, [x / 1280.0, y / 480.0]);
     let mut target = Target::new(framebuffer.width(), framebuffer.height());
-    target.clear(Color::BLACK, 1000.0);
+    target.clear(Color::BLACK, FAR_AWAY);
     let texture = Texture::book();
     for triangle in [
         [corner(0.0, 0.0, 10.0), corner(0.0, 480.0, 10.0), corner(1280.0, 0.0, 100.0)],
@@ -121,7 +125,7 @@ fn floor(framebuffer: &mut Framebuffer, volume: ClipVolume) {
     let texel = |uv| Color::truncated(texture.nearest(uv, AddressMode::Repeat));
 
     let mut target = Target::new(framebuffer.width(), framebuffer.height());
-    target.clear(Color::rgb(20, 24, 32), 1000.0);
+    target.clear(Color::rgb(20, 24, 32), FAR_AWAY);
     for triangle in [[a, b, c], [a, c, d]] {
         let to_screen = |divided: NdcVertex<2>| dvec2(320.0, 240.0) + divided.position.truncate();
         draw(&mut target, triangle, volume, to_screen, texel);

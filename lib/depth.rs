@@ -59,12 +59,36 @@ impl DepthTest {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DepthEncoding {
     /// The distance z of camera space, which is ω, interpolated like a value: a w-buffer. Book, section 6.2.
+    ///
+    /// Clear the buffer to more than the largest distance.
     ViewZ,
     /// −1/z, linear on the screen: what the divide makes of a clip-space z of −1. Book, section 7.2.
     Reciprocal,
     /// z of NDC, a + b/z, from −1 at the near plane to 1 at the far plane; linear on the screen. Book, section 8.2.
     #[default]
     Ndc,
+}
+
+impl DepthEncoding {
+    /// What the vertex stage writes as z of clip space, so that the divide by ω = z leaves this encoding: z · z, −1, or
+    /// a z + b with `near` → −1 and `far` → 1. The distances count for [`Self::Ndc`] alone.
+    #[must_use]
+    pub fn clip_z(self, view_z: f64, near: f64, far: f64) -> f64 {
+        match self {
+            Self::ViewZ => view_z * view_z,
+            Self::Reciprocal => -1.0,
+            Self::Ndc => (far + near) / (far - near) * view_z + 2.0 * near * far / (near - far),
+        }
+    }
+
+    /// Whether it changes evenly on the screen, and so needs no correction. Book, section 7.5.1.
+    #[must_use]
+    pub const fn is_linear_on_screen(self) -> bool {
+        match self {
+            Self::ViewZ => false,
+            Self::Reciprocal | Self::Ndc => true,
+        }
+    }
 }
 
 /// The depth of hardware buffers, 0 at the near plane and 1 at the far plane, from the distance ω.
@@ -191,7 +215,21 @@ mod tests {
         #[test]
         fn every_encoding_grows_with_the_distance(z in 1.0..10.0, more in 0.001..5.0) {
             prop_assert!(z_from_w(z, 1.0, 20.0) < z_from_w(z + more, 1.0, 20.0));
-            prop_assert!(-1.0 / z < -1.0 / (z + more));
+            for encoding in [DepthEncoding::ViewZ, DepthEncoding::Reciprocal, DepthEncoding::Ndc] {
+                let divided = |z: f64| encoding.clip_z(z, 1.0, 20.0) / z;
+                prop_assert!(divided(z) < divided(z + more), "{:?}", encoding);
+            }
+        }
+
+        #[test]
+        fn two_encodings_are_linear_on_the_screen(w in prop::array::uniform2(1.0..10.0), t in 0.1..0.9) {
+            let [a, b] = w.map(|w| Projected { w, values: [] });
+            let seen = Interpolation::PerspectiveCorrect.between(a, b, t).w;
+            for encoding in [DepthEncoding::ViewZ, DepthEncoding::Reciprocal, DepthEncoding::Ndc] {
+                let [za, zb, z] = [w[0], w[1], seen].map(|w| encoding.clip_z(w, 1.0, 20.0) / w);
+                let is_linear = (z - (za + (zb - za) * t)).abs() < 1e-12;
+                prop_assert!(is_linear == encoding.is_linear_on_screen() || (w[0] - w[1]).abs() < 1e-3);
+            }
         }
     }
 }

@@ -3,6 +3,8 @@
 //! Where the data flow begins for a picture of something: a Wavefront OBJ file becomes meshes, an image file a texture.
 //! What is wrong with a file is said with the file's name; nothing is drawn then.
 //!
+//! Polygons become fans of triangles from their first corner, which is right for convex ones.
+//!
 //! # Handedness
 //!
 //! OBJ files are right-handed, camera space here is left-handed: z of positions and normals changes its sign, once,

@@ -6,7 +6,7 @@
 
 use crate::area::{is_drawable, twice_signed_area};
 use crate::clip::NdcVertex;
-use crate::depth::{DepthEncoding, Target};
+use crate::depth::Target;
 use crate::interpolate::{Projected, step_parameter_and_depth};
 use crate::merge::merge;
 use crate::pipeline::RenderState;
@@ -79,10 +79,8 @@ fn draw_triangle<S: Shader<N>, P: Probe, const N: usize>(
 
     // 7. Rasterization: which pixels, and which values.
     step_parameter_and_depth(corners, state.interpolation, state.walk, window, |x, y, point, z| {
-        let depth = match state.depth_encoding {
-            DepthEncoding::ViewZ => point.w,
-            DepthEncoding::Reciprocal | DepthEncoding::Ndc => z,
-        };
+        // What is not linear on the screen is ω itself, which is interpolated like a value.
+        let depth = if state.depth_encoding.is_linear_on_screen() { z } else { point.w };
         // 8. Fragment shading.
         let shaded = shader.fragment(point.values);
         // 9. Depth test, and 10. blending.

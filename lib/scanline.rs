@@ -54,7 +54,8 @@ pub enum StepLimit {
     /// still pass the end.
     #[default]
     Edges,
-    /// Limited along the sides and along the row: no value leaves the range of the vertices.
+    /// Limited along the sides and along the row: no value leaves the range of the vertices. (A depth that is stepped
+    /// beside t is never limited, as in the book.)
     Everywhere,
 }
 
