@@ -57,21 +57,20 @@ fn vertex([x, y, z]: [f64; 3], [u, v]: [f64; 2]) -> Corner<Projected<f64, 3>> {
 // ANCHOR_END: vertex
 
 // ANCHOR: z_buffer
-/// Draws a textured triangle where it is not behind what has been drawn.
-fn draw_textured(target: &mut Target, triangle: Triangle<3>, texture: &Texture) {
+/// Draws a triangle where it passes the test; its last value is its depth, `color_of` makes a color of all of them.
+fn draw<const N: usize>(
+    target: &mut Target,
+    triangle: Triangle<N>,
+    test: DepthTest,
+    color_of: impl Fn([f64; N]) -> Color,
+) {
     let Target { color, depth } = target;
-    step_parameter(
-        triangle,
-        Interpolation::PerspectiveCorrect,
-        Walk::default(),
-        color.rect(),
-        |x, y, point| {
-            let [u, v, z] = point.values;
-            if depth.test_and_set(x, y, z, DepthTest::LessOrEqual) {
-                color.set(x, y, Color::truncated(texture.nearest([u, v], AddressMode::Clamp)));
-            }
-        },
-    );
+    let (interpolation, walk) = (Interpolation::PerspectiveCorrect, Walk::default());
+    step_parameter(triangle, interpolation, walk, color.rect(), |x, y, point| {
+        if depth.test_and_set(x, y, point.values[N - 1], test) {
+            color.set(x, y, color_of(point.values));
+        }
+    });
 }
 
 /// The tilted square of chapter 5, then a square behind it.
@@ -87,8 +86,11 @@ fn z_buffer(framebuffer: &mut Framebuffer) {
 
     let mut target = Target::new(framebuffer.width(), framebuffer.height());
     target.clear(Color::BLACK, FAR_AWAY);
+    let texture = Texture::book();
     for triangle in tilted.into_iter().chain(facing) {
-        draw_textured(&mut target, triangle, &Texture::book());
+        draw(&mut target, triangle, DepthTest::LessOrEqual, |[u, v, _]| {
+            Color::truncated(texture.nearest([u, v], AddressMode::Clamp))
+        });
     }
     *framebuffer = target.color;
 }
@@ -101,27 +103,11 @@ fn seen_from_middle(x: f64, y: f64, z: f64) -> Corner<Projected<f64, 1>> {
     Corner { position, attributes: Projected { w: clip.w, values: [z] } }
 }
 
-/// Draws a triangle in one color; `test` says against what.
-fn draw_flat(target: &mut Target, triangle: Triangle<1>, test: DepthTest, flat: Color) {
-    let Target { color, depth } = target;
-    step_parameter(
-        triangle,
-        Interpolation::PerspectiveCorrect,
-        Walk::default(),
-        color.rect(),
-        |x, y, point| {
-            if depth.test_and_set(x, y, point.values[0], test) {
-                color.set(x, y, flat);
-            }
-        },
-    );
-}
-
 /// Draws an upright square, its lower left corner given, as two triangles.
 fn draw_square(target: &mut Target, [x, y, z]: [f64; 3], side: f64, test: DepthTest, flat: Color) {
     let corner = |i: f64, j: f64| seen_from_middle(x + i * side, y + j * side, z);
-    draw_flat(target, [corner(0.0, 0.0), corner(1.0, 0.0), corner(0.0, 1.0)], test, flat);
-    draw_flat(target, [corner(1.0, 0.0), corner(1.0, 1.0), corner(0.0, 1.0)], test, flat);
+    draw(target, [corner(0.0, 0.0), corner(1.0, 0.0), corner(0.0, 1.0)], test, |_| flat);
+    draw(target, [corner(1.0, 0.0), corner(1.0, 1.0), corner(0.0, 1.0)], test, |_| flat);
 }
 
 const RED: Color = Color::rgb(225, 70, 60);
@@ -162,7 +148,7 @@ fn piercing(framebuffer: &mut Framebuffer, red_first: bool, test: DepthTest) {
     let mut target = Target::new(framebuffer.width(), framebuffer.height());
     target.clear(Color::BLACK, FAR_AWAY);
     for (triangle, color) in order {
-        draw_flat(&mut target, triangle, test, color);
+        draw(&mut target, triangle, test, |_| color);
     }
     *framebuffer = target.color;
 }
@@ -190,8 +176,8 @@ fn encoded_depths(framebuffer: &mut Framebuffer, encode: impl Fn(f64) -> f64) {
     target.clear(Color::BLACK, FAR_AWAY);
     let floor = |x: f64, z: f64| seen_from_middle(x, -0.5, z);
     let [a, b, c, d] = [floor(-12.0, 1.0), floor(12.0, 1.0), floor(12.0, 12.0), floor(-12.0, 12.0)];
-    draw_flat(&mut target, [a, b, c], DepthTest::LessOrEqual, Color::BLACK);
-    draw_flat(&mut target, [a, c, d], DepthTest::LessOrEqual, Color::BLACK);
+    draw(&mut target, [a, b, c], DepthTest::LessOrEqual, |_| Color::BLACK);
+    draw(&mut target, [a, c, d], DepthTest::LessOrEqual, |_| Color::BLACK);
     for (x, z) in [(-0.85, 1.5), (-0.72, 2.2), (-0.3, 3.4), (0.6, 4.5), (2.1, 6.5), (4.6, 9.5)] {
         draw_square(&mut target, [x, -0.5, z], 0.6, DepthTest::LessOrEqual, Color::BLACK);
     }

@@ -13,11 +13,11 @@ use glam::{DVec4, dvec2, dvec3, dvec4};
 use rasterbook::clip::{
     ClipTest, ClipVertex, ClipVolume, NdcVertex, Plane, clip_polygon, clip_triangle, fan,
 };
-use rasterbook::depth::{DepthEncoding, DepthTest, Target};
-use rasterbook::interpolate::{Interpolation, Projected, step_parameter_and_depth};
+use rasterbook::depth::{DepthEncoding, Target};
+use rasterbook::interpolate::Projected;
 use rasterbook::line::{StepAxis, dda};
 use rasterbook::program::{Chapter, Variant};
-use rasterbook::scanline::{Corner, Walk};
+use rasterbook::scanline::Corner;
 use rasterbook::texture::{AddressMode, Texture};
 use rasterbook::transform::perspective;
 use rasterbook::{Color, Framebuffer, Rect};
@@ -52,7 +52,6 @@ fn draw(
     texel: impl Fn([f64; 2]) -> Color,
 ) {
     let planes = volume.planes(Default::default());
-    let Target { color, depth } = target;
     for piece in fan(clip_triangle(triangle, &planes, ClipTest::BeforeDivide)) {
         let corners = piece.map(|vertex| {
             let divided = NdcVertex::from(vertex);
@@ -60,18 +59,7 @@ fn draw(
             // a + b/z changes evenly on the screen: it is stepped beside t′, and needs no correction.
             Corner { position: to_screen(divided), attributes: (projected, divided.position.z) }
         });
-        let window = color.rect();
-        step_parameter_and_depth(
-            corners,
-            Interpolation::PerspectiveCorrect,
-            Walk::default(),
-            window,
-            |x, y, point, z| {
-                if depth.test_and_set(x, y, z, DepthTest::LessOrEqual) {
-                    color.set(x, y, texel(point.values));
-                }
-            },
-        );
+        target.fill(corners, &texel);
     }
 }
 // ANCHOR_END: draw

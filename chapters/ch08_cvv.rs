@@ -10,11 +10,11 @@ use std::process::ExitCode;
 
 use glam::{DVec2, DVec3, DVec4, dvec2, dvec3};
 use rasterbook::clip::{ClipTest, ClipVertex, ClipVolume, DepthRange, NdcVertex, Plane, clip_triangle, fan};
-use rasterbook::depth::{DepthTest, Target};
-use rasterbook::interpolate::{Interpolation, Projected, step_parameter_and_depth};
+use rasterbook::depth::Target;
+use rasterbook::interpolate::Projected;
 use rasterbook::line::{StepAxis, dda};
 use rasterbook::program::{Chapter, Variant};
-use rasterbook::scanline::{Corner, Walk};
+use rasterbook::scanline::Corner;
 use rasterbook::texture::{AddressMode, Texture};
 use rasterbook::transform::{Frustum, Viewport, perspective_divide};
 use rasterbook::{Color, Framebuffer, Rect};
@@ -46,26 +46,14 @@ const ASPECT: f64 = 4.0 / 3.0;
 /// Draws a triangle from clip space: clip, divide, lay onto the screen, fill with depth test.
 fn draw(target: &mut Target, triangle: [ClipVertex<2>; 3], planes: &[Plane], test: ClipTest) {
     let texture = Texture::book();
-    let Target { color, depth } = target;
-    let viewport = Viewport::fitting(color.rect(), ASPECT);
+    let viewport = Viewport::fitting(target.color.rect(), ASPECT);
     for piece in fan(clip_triangle(triangle, planes, test)) {
         let corners = piece.map(|vertex| {
             let NdcVertex { position, w, varyings } = vertex.into();
             let attributes = (Projected { w, values: varyings }, position.z);
             Corner { position: viewport.pixel_corners(position), attributes }
         });
-        let window = color.rect();
-        step_parameter_and_depth(
-            corners,
-            Interpolation::PerspectiveCorrect,
-            Walk::default(),
-            window,
-            |x, y, point, z| {
-                if depth.test_and_set(x, y, z, DepthTest::LessOrEqual) {
-                    color.set(x, y, Color::truncated(texture.nearest(point.values, AddressMode::Clamp)));
-                }
-            },
-        );
+        target.fill(corners, |uv| Color::truncated(texture.nearest(uv, AddressMode::Clamp)));
     }
 }
 

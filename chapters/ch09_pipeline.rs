@@ -14,7 +14,7 @@ use rasterbook::area::Winding;
 use rasterbook::clip::ClipVertex;
 use rasterbook::cull::CullMode;
 use rasterbook::merge::{Blend, Merge};
-use rasterbook::mesh::{Mesh, MeshError};
+use rasterbook::mesh::Mesh;
 use rasterbook::pipeline::RenderState;
 use rasterbook::program::{Animation, Canvas, Chapter, Variant};
 use rasterbook::real::Real;
@@ -99,15 +99,10 @@ fn book_texture(view: Frustum) -> Textured {
     Textured { view, texture: Texture::book() }
 }
 
-/// A mesh of the chapter itself, which is well formed.
-fn triangles<A>(mesh: Result<Mesh<A>, MeshError>) -> Mesh<A> {
-    mesh.unwrap_or_else(|error| unreachable!("{error}"))
-}
-
 // ANCHOR: render
 /// Clears the canvas, and sends triangles through the pipeline.
 fn textured_picture(canvas: &mut Canvas, vertices: Vec<Attributes>, state: &RenderState) {
-    canvas.render(&triangles(Mesh::unindexed(vertices)), &book_texture(VIEW), state);
+    canvas.render(&Mesh::unindexed(vertices).expect("whole triangles"), &book_texture(VIEW), state);
 }
 // ANCHOR_END: render
 
@@ -158,7 +153,11 @@ fn screen_for(canvas: &Canvas) -> SwapChain {
 
 fn draw_frame(canvas: &mut Canvas, frame: u32) {
     let state = RenderState { cull: CullMode::Back, ..RenderState::default() };
-    canvas.render(&triangles(Mesh::unindexed(large_triangle())), &book_texture(view_of(frame)), &state);
+    canvas.render(
+        &Mesh::unindexed(large_triangle()).expect("whole triangles"),
+        &book_texture(view_of(frame)),
+        &state,
+    );
 }
 // ANCHOR_END: frames
 
@@ -174,7 +173,7 @@ fn five_frames(canvas: &mut Canvas, clear: bool) {
         let (x, fade) = (30.0 + 90.0 * f64::from(frame), 50.0 * f64::from(frame));
         let corners = vec![[x, 90.0], [x + 190.0, 150.0], [x + 60.0, 400.0]];
         let shader = Flat { color: [40.0 + fade, 90.0 + fade / 3.0, 240.0 - fade], opacity: 1.0 };
-        canvas.draw(&triangles(Mesh::unindexed(corners)), &shader, &state);
+        canvas.draw(&Mesh::unindexed(corners).expect("whole triangles"), &shader, &state);
     }
 }
 
@@ -245,7 +244,11 @@ fn indexed(canvas: &mut Canvas) {
         .flat_map(|corner| [corner, corner + 1, corner + 7, corner + 1, corner + 8, corner + 7])
         .collect();
 
-    canvas.render(&triangles(Mesh::indexed(vertices, indices)), &Relief, &RenderState::default());
+    canvas.render(
+        &Mesh::indexed(vertices, indices).expect("indices of the hill"),
+        &Relief,
+        &RenderState::default(),
+    );
 }
 // ANCHOR_END: indexed
 
@@ -278,7 +281,11 @@ fn blended(canvas: &mut Canvas) {
     let mut add = |corners: [[f64; 2]; 3], color, opacity, blend| {
         let merge = Merge { blend, ..Merge::default() };
         let state = RenderState { merge, ..RenderState::default() };
-        canvas.draw(&triangles(Mesh::unindexed(corners.to_vec())), &Flat { color, opacity }, &state);
+        canvas.draw(
+            &Mesh::unindexed(corners.to_vec()).expect("whole triangles"),
+            &Flat { color, opacity },
+            &state,
+        );
     };
 
     // The wall behind them: squares of 40 pixels.

@@ -13,6 +13,8 @@
 //! assert_eq!(target.depth.get(1, 1), Some(340.0));
 //! ```
 
+use crate::interpolate::{Interpolation, Projected, step_parameter_and_depth};
+use crate::scanline::{Corner, Walk};
 use crate::{Color, Framebuffer, Rect};
 
 /// When a fragment is drawn: how its depth must compare with the stored one.
@@ -168,12 +170,29 @@ impl Target {
         self.color.clear(color);
         self.depth.clear(depth);
     }
+
+    // ANCHOR: fill
+    /// Fills a triangle where it is not behind what has been drawn (chapters 7 and 8; the pipeline of chapter 9 has more
+    /// options). Screen space; the depth of a corner, beside its ω and values, changes evenly on the screen.
+    pub fn fill<const N: usize>(
+        &mut self,
+        corners: [Corner<(Projected<f64, N>, f64)>; 3],
+        color_of: impl Fn([f64; N]) -> Color,
+    ) {
+        let Self { color, depth } = self;
+        let (interpolation, walk) = (Interpolation::PerspectiveCorrect, Walk::default());
+        step_parameter_and_depth(corners, interpolation, walk, color.rect(), |x, y, point, z| {
+            if depth.test_and_set(x, y, z, DepthTest::LessOrEqual) {
+                color.set(x, y, color_of(point.values));
+            }
+        });
+    }
+    // ANCHOR_END: fill
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::interpolate::{Interpolation, Projected};
     use proptest::prelude::*;
 
     #[test]

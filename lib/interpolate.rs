@@ -18,7 +18,7 @@ use glam::DVec2;
 use crate::Rect;
 use crate::area::twice_signed_area;
 use crate::real::Real;
-use crate::scanline::{Corner, Edge, Payload, Walk, split};
+use crate::scanline::{Corner, Edge, Payload, StepLimit, Walk, split};
 
 // ANCHOR: barycentric_weights
 /// How much each corner of a triangle weighs at the point p: the area of the small triangle opposite to the corner, as
@@ -181,7 +181,7 @@ pub fn step_parameter_and_depth<const N: usize>(
 
 /// What is stepped along edges and rows: t′, and something that changes evenly on the screen.
 ///
-/// Only t′ is limited at an edge's end, as in the book.
+/// At an edge's end the book's remedy limits t′ alone.
 #[derive(Clone, Copy)]
 struct Along<E> {
     t: f64,
@@ -197,8 +197,12 @@ impl<E: Payload> Payload for Along<E> {
         Self { t: self.t.stepped(slope.t, count), evenly: self.evenly.stepped(slope.evenly, count) }
     }
 
-    fn limited(self, start: Self, end: Self) -> Self {
-        Self { t: self.t.limited(start.t, end.t), ..self }
+    fn limited(self, start: Self, end: Self, limit: StepLimit) -> Self {
+        let evenly = match limit {
+            StepLimit::Everywhere => self.evenly.limited(start.evenly, end.evenly, limit),
+            StepLimit::Edges | StepLimit::Overrun => self.evenly,
+        };
+        Self { t: self.t.limited(start.t, end.t, limit), evenly }
     }
 }
 
@@ -234,7 +238,6 @@ fn step_parameter_and<E: Payload, const N: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scanline::StepLimit;
     use crate::transform::{perspective, perspective_divide};
     use glam::{DVec3, dvec2, dvec3};
     use proptest::prelude::*;
@@ -330,6 +333,18 @@ mod tests {
             for ((x, y), point) in walk_points([a, a + dvec2(width, 0.0), a + dvec2(0.0, height)]) {
                 prop_assert!((point - dvec2(f64::from(x), f64::from(y))).length() < 1e-9, "{point} at ({x}, {y})");
             }
+        }
+
+        #[test]
+        fn limited_everywhere_no_depth_leaves_the_range_of_the_corners(
+            t in prop::array::uniform3(point()), z in prop::array::uniform3(-1.0..1.0), w in prop::array::uniform3(0.5..9.0),
+        ) {
+            let corners = from_fn(|i| Corner { position: t[i], attributes: (Projected { w: w[i], values: [] }, z[i]) });
+            let walk = Walk { limit: StepLimit::Everywhere, ..Walk::default() };
+            let (low, high) = (z.iter().copied().fold(1.0, f64::min), z.iter().copied().fold(-1.0, f64::max));
+            step_parameter_and_depth(corners, Interpolation::PerspectiveCorrect, walk, WINDOW, |x, y, _, depth| {
+                assert!(depth >= low - 1e-9 && depth <= high + 1e-9, "{depth} at ({x}, {y}) is not in {low}..{high}");
+            });
         }
 
         #[test]

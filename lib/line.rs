@@ -82,7 +82,7 @@ fn step(
     // What lies before the window is passed over in one stride.
     let skipped = f64::from(visible.start) - along.trunc();
     if skipped > 0.0 {
-        along += skipped;
+        along = f64::from(visible.start) + along.fract();
         across += slope * skipped;
     }
     while along < end.trunc() && along < f64::from(visible.end) {

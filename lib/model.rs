@@ -43,7 +43,7 @@ pub struct FileError {
 }
 
 impl FileError {
-    fn new(path: &Path, cause: impl fmt::Display) -> Self {
+    pub(crate) fn new(path: &Path, cause: impl fmt::Display) -> Self {
         Self { path: path.to_owned(), cause: cause.to_string() }
     }
 }
@@ -89,7 +89,8 @@ pub struct Model {
 /// How normals are made where a file has none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum NormalStyle {
-    /// At a shared position the mean of the faces around it, larger faces counting more: a smooth surface.
+    /// At a shared position the mean of the faces around it, in whichever object of the file, larger faces counting
+    /// more: a smooth surface.
     #[default]
     Smooth,
     /// Those of the faces: edges show. Normals in the file are not used.
@@ -109,13 +110,7 @@ impl Model {
         style: NormalStyle,
         progress: impl FnMut(u64, u64),
     ) -> Result<(Self, Warnings), FileError> {
-        let file = File::open(path).map_err(|error| FileError::new(path, error))?;
-        let metadata = file.metadata().map_err(|error| FileError::new(path, error))?;
-        if metadata.is_dir() {
-            return Err(FileError::new(path, "is a folder, not an OBJ file"));
-        }
-        let mut bytes = Vec::new();
-        (&file).read_to_end(&mut bytes).map_err(|error| FileError::new(path, error))?;
+        let bytes = read_file(path)?;
         Self::parse_with_progress(&bytes, path, style, progress)
     }
 
@@ -164,16 +159,26 @@ impl Model {
             Vec::new()
         });
         let textures = Textures::load(&materials, folder, &mut warnings);
+        let given = Given::of_faces(&text);
+        warnings.extend(given.warnings(path));
+        let smooth = smooth_normals(models.iter().map(|model| &model.mesh));
         let mut parts = Vec::new();
         for model in models.iter().filter(|model| !model.mesh.indices.is_empty()) {
-            let mesh = part_mesh(&model.mesh, style).map_err(|cause| FileError::new(path, cause))?;
+            let mesh =
+                part_mesh(&model.mesh, given, style, &smooth).map_err(|cause| FileError::new(path, cause))?;
             let texture = model.mesh.material_id.and_then(|id| textures.0.get(id).cloned().flatten());
             parts.push(Part { mesh, texture });
         }
         if parts.is_empty() {
-            return Err(FileError::new(path, "has no faces"));
+            return Err(FileError::new(path, "has no faces; is it an OBJ file?"));
         }
         Ok((Self { parts }, warnings))
+    }
+
+    /// Whether its corners have texture coordinates that differ; without them a texture shows one texel alone.
+    #[must_use]
+    pub fn has_texture_coordinates(&self) -> bool {
+        self.parts.iter().flat_map(|part| part.mesh.vertices()).any(|vertex| vertex.uv != [0.0, 0.0])
     }
 
     /// How many triangles it has.
@@ -201,15 +206,24 @@ impl Model {
         // In two steps, since squares of large coordinates may not be finite either.
         let largest = (high / 2.0 - low / 2.0).max_element();
         let size = largest * positions.map(|p| ((p - middle) / largest).length()).fold(0.0, f64::max);
-        let factor = if size > 0.0 { radius / size } else { 1.0 };
+        let scaled = |offset: DVec3| if size > 0.0 { offset / size * radius } else { offset };
         for part in &mut self.parts {
-            part.mesh = part.mesh.map(|vertex| ModelVertex {
-                position: center + (vertex.position - middle) * factor,
-                ..*vertex
-            });
+            part.mesh = part
+                .mesh
+                .map(|vertex| ModelVertex { position: center + scaled(vertex.position - middle), ..*vertex });
         }
         self
     }
+}
+
+/// The bytes of a file: not of a folder, nor of a device that never ends.
+fn read_file(path: &Path) -> Result<Vec<u8>, FileError> {
+    let failure = |error| FileError::new(path, error);
+    let metadata = std::fs::metadata(path).map_err(failure)?;
+    if !metadata.is_file() {
+        return Err(FileError::new(path, "is no file"));
+    }
+    std::fs::read(path).map_err(failure)
 }
 
 /// A reader that tells how far it has come.
@@ -229,40 +243,104 @@ impl<R: Read, F: FnMut(u64, u64)> Read for Counting<R, F> {
     }
 }
 
+/// What the faces of a file say of their corners. Where only some of them do, it is taken as if none did: a parser that
+/// has no number for a corner takes another one's.
+#[derive(Clone, Copy)]
+struct Given {
+    normals: bool,
+    uvs: bool,
+    some_normals: bool,
+    some_uvs: bool,
+}
+
+impl Given {
+    fn of_faces(text: &str) -> Self {
+        let mut given = Self { normals: true, uvs: true, some_normals: false, some_uvs: false };
+        let faces =
+            text.lines().filter_map(|line| line.trim_start().strip_prefix("f ").or(line.strip_prefix("f\t")));
+        for corner in faces.flat_map(str::split_whitespace) {
+            let mut numbers = corner.split('/').skip(1);
+            let [has_uv, has_normal] =
+                [(); 2].map(|()| numbers.next().is_some_and(|number| !number.is_empty()));
+            given.normals &= has_normal;
+            given.uvs &= has_uv;
+            given.some_normals |= has_normal;
+            given.some_uvs |= has_uv;
+        }
+        given
+    }
+
+    fn warnings(self, path: &Path) -> Warnings {
+        let mut warnings = Warnings::new();
+        for (some, all, what) in [
+            (self.some_normals, self.normals, "normals: they are computed for all"),
+            (self.some_uvs, self.uvs, "texture coordinates: none are used"),
+        ] {
+            if some && !all {
+                warnings.push(format!("{}: only some of its faces have {what}", path.display()));
+            }
+        }
+        warnings
+    }
+}
+
+/// A position by which corners of different objects are recognized as the same.
+fn key_of(position: DVec3) -> [u64; 3] {
+    // Adding zero makes one of the two zeros.
+    position.to_array().map(|coordinate| (coordinate + 0.0).to_bits())
+}
+
+/// The positions of an object, right-handed → left-handed.
+fn positions_of(mesh: &tobj::Mesh) -> Vec<DVec3> {
+    mesh.positions.chunks_exact(3).map(left_handed).collect()
+}
+
+fn left_handed(v: &[f64]) -> DVec3 {
+    dvec3(v[0], v[1], -v[2])
+}
+
 /// The triangles of one object: a vertex for each combination of position, normal and texture coordinates that occurs.
-fn part_mesh(mesh: &tobj::Mesh, style: NormalStyle) -> Result<Mesh<ModelVertex>, String> {
-    // Right-handed → left-handed.
-    let vector = |v: &[f64]| dvec3(v[0], v[1], -v[2]);
-    let positions: Vec<DVec3> = mesh.positions.chunks_exact(3).map(vector).collect();
-    let given: Vec<DVec3> = mesh.normals.chunks_exact(3).map(vector).collect();
-    if let Some(bad) = positions.iter().chain(&given).find(|v| !v.is_finite()) {
+fn part_mesh(
+    mesh: &tobj::Mesh,
+    given: Given,
+    style: NormalStyle,
+    smooth: &HashMap<[u64; 3], DVec3>,
+) -> Result<Mesh<ModelVertex>, String> {
+    let positions = positions_of(mesh);
+    let normals: Vec<DVec3> = mesh.normals.chunks_exact(3).map(left_handed).collect();
+    if let Some(bad) = positions.iter().chain(&normals).find(|v| !v.is_finite()) {
         return Err(format!("has a coordinate that is not a finite number: {} {} {}", bad.x, bad.y, -bad.z));
     }
     if mesh.texcoords.iter().any(|coordinate| !coordinate.is_finite()) {
         return Err("has a texture coordinate that is not a finite number".to_owned());
     }
 
-    let has_normals = style == NormalStyle::Smooth && mesh.normal_indices.len() == mesh.indices.len();
-    let has_uvs = mesh.texcoord_indices.len() == mesh.indices.len();
-    let faces: Vec<DVec3> = mesh.indices.chunks_exact(3).map(|face| face_normal(face, &positions)).collect();
-    let smooth =
-        if has_normals { Vec::new() } else { smooth_normals(&mesh.indices, &faces, positions.len()) };
-
+    let has_normals =
+        given.normals && style == NormalStyle::Smooth && mesh.normal_indices.len() == mesh.indices.len();
+    let has_uvs = given.uvs && mesh.texcoord_indices.len() == mesh.indices.len();
     let mut vertices = Vec::new();
     let mut known = HashMap::new();
     let mut indices = Vec::with_capacity(mesh.indices.len());
     for (corner, &position) in mesh.indices.iter().enumerate() {
-        let normal = if has_normals { mesh.normal_indices[corner] as usize } else { corner / 3 };
+        let face = corner / 3;
         let uv = if has_uvs { mesh.texcoord_indices[corner] as usize } else { 0 };
-        // Smooth normals belong to the position; flat ones make a vertex of every corner of a face.
-        let key = (position, if has_normals || style == NormalStyle::Flat { normal } else { 0 }, uv);
-        let index = *known.entry(key).or_insert_with(|| {
+        // A smooth normal belongs to its position, a flat one to its face.
+        let normal = match style {
+            _ if has_normals => mesh.normal_indices[corner] as usize,
+            NormalStyle::Flat => face,
+            NormalStyle::Smooth => 0,
+        };
+        let index = *known.entry((position, normal, uv)).or_insert_with(|| {
+            let position = positions[position as usize];
             vertices.push(ModelVertex {
-                position: positions[position as usize],
+                position,
                 normal: match style {
-                    _ if has_normals => given[normal],
-                    NormalStyle::Flat => faces[corner / 3].normalize_or(DVec3::Z),
-                    NormalStyle::Smooth => smooth[position as usize],
+                    _ if has_normals => normals[normal],
+                    NormalStyle::Flat => face_normal(&mesh.indices[3 * face..3 * face + 3], &positions)
+                        .normalize_or(DVec3::NEG_Z),
+                    NormalStyle::Smooth => {
+                        smooth.get(&key_of(position)).map_or(DVec3::NEG_Z, |n| n.normalize_or(DVec3::NEG_Z))
+                    }
                 },
                 uv: if has_uvs { [mesh.texcoords[2 * uv], mesh.texcoords[2 * uv + 1]] } else { [0.0, 0.0] },
             });
@@ -280,13 +358,19 @@ fn face_normal(face: &[u32], positions: &[DVec3]) -> DVec3 {
     (c - a).cross(b - a)
 }
 
-/// The mean of the face normals around each position.
-fn smooth_normals(indices: &[u32], faces: &[DVec3], positions: usize) -> Vec<DVec3> {
-    let mut sums = vec![DVec3::ZERO; positions];
-    for (corner, &position) in indices.iter().enumerate() {
-        sums[position as usize] += faces[corner / 3];
+/// The sum of the face normals around each position, in whichever objects they are.
+fn smooth_normals<'a>(meshes: impl Iterator<Item = &'a tobj::Mesh>) -> HashMap<[u64; 3], DVec3> {
+    let mut sums = HashMap::new();
+    for mesh in meshes {
+        let positions = positions_of(mesh);
+        for face in mesh.indices.chunks_exact(3) {
+            let normal = face_normal(face, &positions);
+            for &corner in face {
+                *sums.entry(key_of(positions[corner as usize])).or_insert(DVec3::ZERO) += normal;
+            }
+        }
     }
-    sums.into_iter().map(|sum| sum.normalize_or(DVec3::Z)).collect()
+    sums
 }
 
 /// The textures of materials, in their order.
@@ -321,7 +405,7 @@ impl Textures {
 /// # Errors
 /// If the file cannot be read or is no such image, or if it is larger than 16384×16384 pixels or 1 GiB in memory.
 pub fn load_texture(path: &Path) -> Result<(Texture, Warnings), FileError> {
-    let bytes = std::fs::read(path).map_err(|error| FileError::new(path, error))?;
+    let bytes = read_file(path)?;
     let (texture, format) = decode_texture(&bytes, path)?;
     let mut warnings = Warnings::new();
     if let Ok(named) = ImageFormat::from_path(path)
@@ -353,12 +437,12 @@ pub fn decode_texture(bytes: &[u8], path: &Path) -> Result<(Texture, ImageFormat
     if image.width() == 0 || image.height() == 0 {
         return Err(FileError::new(path, "has no pixels"));
     }
-    Ok((texture_of(&image), format))
+    Ok((texture_of(image), format))
 }
 
 /// An image, whose first row is on top, as a texture, whose first row is at the bottom.
-fn texture_of(image: &DynamicImage) -> Texture {
-    let pixels = image.to_rgb8();
+fn texture_of(image: DynamicImage) -> Texture {
+    let pixels = image.into_rgb8();
     let texels =
         pixels.rows().rev().flatten().map(|pixel| Color::rgb(pixel[0], pixel[1], pixel[2])).collect();
     Texture::new(pixels.width(), pixels.height(), texels)
@@ -426,11 +510,35 @@ mod tests {
     }
 
     #[test]
+    fn objects_share_their_smooth_normals() {
+        let roof = "v -1 0 0\nv 0 1 0\nv 0 1 -1\nv 1 0 0\ng left\nf 1 2 3\ng right\nf 4 3 2\n";
+        let (model, _) = parse(roof).expect("a roof of two groups");
+        let ridge = model
+            .parts
+            .iter()
+            .flat_map(|part| part.mesh.vertices())
+            .filter(|vertex| vertex.position.x == 0.0);
+        assert!(ridge.clone().count() == 4 && ridge.clone().all(|vertex| vertex.normal.x.abs() < 1e-12));
+    }
+
+    #[test]
+    fn normals_of_some_faces_are_not_used() {
+        let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvn 1 0 0\nf 1//1 2//1 3//1\nf 2 4 3\n";
+        let (model, warnings) = parse(text).expect("two faces");
+        assert!(
+            warnings.len() == 1 && warnings[0].contains("only some of its faces have normals"),
+            "{warnings:?}"
+        );
+        let normals = model.parts[0].mesh.vertices().iter().map(|vertex| vertex.normal);
+        assert!(normals.into_iter().all(|normal| normal == dvec3(0.0, 0.0, -1.0)));
+    }
+
+    #[test]
     fn what_is_no_model_is_refused() {
         refused("", "has no faces");
         refused("v 0 0 0\nv 1 0 0\n", "has no faces");
         refused("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", "out of bounds");
-        refused("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -9\n", "");
+        refused("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -9\n", "out of bounds");
         refused("v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/7 2/7 3/7\n", "out of bounds");
         refused("v 0 0 0\nv NaN 0 0\nv 0 1 0\nf 1 2 3\n", "not a finite number");
         refused("v 0 0 0\nv 1e999 0 0\nv 0 1 0\nf 1 2 3\n", "not a finite number");
@@ -480,5 +588,7 @@ mod tests {
         assert!(point.fitted(DVec3::ZERO, 1.0).bounds().0.is_finite());
         let (huge, _) = parse("v 1e308 0 0\nv -1e308 0 0\nv 0 1e308 0\nf 1 2 3\n").expect("a large triangle");
         assert!(huge.fitted(DVec3::ZERO, 1.0).bounds().1.is_finite());
+        let (tiny, _) = parse("v 1e-310 0 0\nv 0 0 0\nv 0 1e-310 0\nf 1 2 3\n").expect("a tiny triangle");
+        assert!(tiny.fitted(DVec3::ZERO, 1.0).bounds().1.is_finite());
     }
 }

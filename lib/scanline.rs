@@ -51,11 +51,10 @@ pub enum StepLimit {
     /// - Remedy: [`StepLimit::Edges`] as in the book (chapter 11), or [`StepLimit::Everywhere`].
     Overrun,
     /// Limited along the two sides after each row, not along the row: the book's remedy. The last pixel of a row may
-    /// still pass the end.
+    /// still pass the end, and a depth that is stepped beside t is not limited.
     #[default]
     Edges,
-    /// Limited along the sides and along the row: no value leaves the range of the vertices. (A depth that is stepped
-    /// beside t is never limited, as in the book.)
+    /// Limited along the sides and along the row, depth included: nothing leaves the range of the vertices.
     Everywhere,
 }
 
@@ -76,16 +75,16 @@ pub trait Payload: Copy {
     /// This value after `count` steps.
     #[must_use]
     fn stepped(self, slope: Self, count: f64) -> Self;
-    /// This value, but not beyond `end` as seen from `start`.
+    /// This value, but not beyond `end` as seen from `start`; `limit` is not [`StepLimit::Overrun`].
     #[must_use]
-    fn limited(self, start: Self, end: Self) -> Self;
+    fn limited(self, start: Self, end: Self, limit: StepLimit) -> Self;
 }
 
 /// Chapter 2: nothing but coverage.
 impl Payload for () {
     fn slope((): (), (): (), _: f64) {}
     fn stepped(self, (): (), _: f64) {}
-    fn limited(self, (): (), (): ()) {}
+    fn limited(self, (): (), (): (), _: StepLimit) {}
 }
 
 /// One number: a coordinate, or the parameter t of chapter 5.
@@ -98,7 +97,7 @@ impl Payload for f64 {
         self + slope * count
     }
 
-    fn limited(self, start: Self, end: Self) -> Self {
+    fn limited(self, start: Self, end: Self, _: StepLimit) -> Self {
         if end > start {
             self.min(end)
         } else if end < start {
@@ -119,8 +118,8 @@ impl<P: Payload, const N: usize> Payload for [P; N] {
         std::array::from_fn(|i| self[i].stepped(slope[i], count))
     }
 
-    fn limited(self, start: Self, end: Self) -> Self {
-        std::array::from_fn(|i| self[i].limited(start[i], end[i]))
+    fn limited(self, start: Self, end: Self, limit: StepLimit) -> Self {
+        std::array::from_fn(|i| self[i].limited(start[i], end[i], limit))
     }
 }
 
@@ -235,7 +234,7 @@ impl<A: Copy> Half<A> {
         if skipped > 0.0 {
             left.step(skipped, walk.limit);
             right.step(skipped, walk.limit);
-            y += skipped;
+            y = f64::from(window.bottom);
         }
 
         while y < end {
@@ -296,7 +295,7 @@ impl<P: Payload> Side<P> {
         self.x = self.x.stepped(self.x_slope, rows);
         self.value = self.value.stepped(self.value_slope, rows);
         if limit != StepLimit::Overrun {
-            self.value = self.value.limited(self.value_ends[0], self.value_ends[1]);
+            self.value = self.value.limited(self.value_ends[0], self.value_ends[1], limit);
         }
     }
 }
@@ -334,7 +333,7 @@ impl<P> Span<P> {
         let mut value = if skipped > 0.0 { from.stepped(slope, skipped) } else { from };
         for x in columns {
             if self.walk.limit == StepLimit::Everywhere {
-                value = value.limited(from, to);
+                value = value.limited(from, to, StepLimit::Everywhere);
             }
             emit(x, value);
             value = value.stepped(slope, 1.0);

@@ -13,6 +13,8 @@
 //! assert_eq!(texture.nearest([1.25, 0.5], AddressMode::Repeat), Color::RED.to_f64());
 //! ```
 
+use std::sync::Arc;
+
 use crate::Color;
 use crate::real::Real;
 
@@ -55,7 +57,8 @@ impl AddressMode {
 pub struct Texture {
     width: u32,
     height: u32,
-    texels: Vec<Color>,
+    /// Shared, so that a copy of a texture costs nothing.
+    texels: Arc<[Color]>,
 }
 
 impl Texture {
@@ -67,7 +70,7 @@ impl Texture {
     pub fn new(width: u32, height: u32, texels: Vec<Color>) -> Self {
         let count = width as usize * height as usize;
         assert!(count > 0 && texels.len() == count, "{width}×{height} texels, but {} given", texels.len());
-        Self { width, height, texels }
+        Self { width, height, texels: texels.into() }
     }
 
     /// The 2×2 texture that the book uses up to chapter 10 (Figure 3-10).

@@ -8,6 +8,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use chapters::CHAPTERS;
+use rasterbook::program::picture::difference;
+use rasterbook::program::{Mistake, Variant};
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -116,6 +118,29 @@ fn every_program_and_every_variant_has_its_line() {
 }
 
 #[test]
+fn pages_count_the_pixels_in_which_mistake_and_remedy_differ() {
+    for (chapter, _) in CHAPTERS {
+        let page = read(&root().join(format!("docs/src/{}.md", chapter.name)));
+        for variant in chapter.variants {
+            let Mistake::MendedBy(remedy) = variant.mistake else { continue };
+            let picture = |variant: &Variant| {
+                let subject = variant.subject().expect("assets");
+                variant.draw(variant.size, 0, subject.as_ref())
+            };
+            let remedy = chapter.find(remedy).expect("a variant");
+            let (_, count) = difference(&picture(variant), &picture(remedy)).expect("of one size");
+            let words: Vec<&str> = page.split_whitespace().collect();
+            assert!(
+                words.contains(&count.to_string().as_str()),
+                "{}.md: {} differs in {count} pixels",
+                chapter.name,
+                variant.name
+            );
+        }
+    }
+}
+
+#[test]
 fn every_convention_names_a_test_that_exists() {
     let sources: String = [files(&root().join("lib"), "rs"), files(&root().join("tests"), "rs")]
         .concat()
@@ -133,7 +158,7 @@ fn every_convention_names_a_test_that_exists() {
             continue;
         }
         let existing = tests.iter().filter(|name| sources.contains(&format!("fn {name}("))).count();
-        assert!(existing > 0, "no test that exists holds: {line}");
+        assert!(existing == tests.len() && existing > 0, "a test that does not exist: {line}");
         count += 1;
     }
     assert!(count > 20, "{count} conventions");

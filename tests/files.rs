@@ -65,11 +65,17 @@ fn bad_models() {
     refused("binary", "--model", "a.obj", &[0x89, b'P', b'N', b'G', 0, 1, 2, 3, 0xff], "not text");
     refused("no_obj", "--model", "a.obj", b"<html><body>404</body></html>\n", "no faces");
     refused("out_of_range", "--model", "a.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", "out of bounds");
-    refused("far_out_of_range", "--model", "a.obj", b"v 0 0 0\nf 1 4000000000 18446744073709551615\n", "");
+    refused(
+        "far_out_of_range",
+        "--model",
+        "a.obj",
+        b"v 0 0 0\nf 1 4000000000 18446744073709551615\n",
+        "face parse error",
+    );
     refused("nan", "--model", "a.obj", b"v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n", "not a finite number");
     refused("infinite", "--model", "a.obj", b"v 0 0 0\nv inf 0 0\nv 0 1 0\nf 1 2 3\n", "not a finite number");
     refused("one_vertex", "--model", "a.obj", b"v 0 0 0\nf 1\n", "no faces");
-    refused("index_zero", "--model", "a.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 0 1 2\n", "");
+    refused("index_zero", "--model", "a.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 0 1 2\n", "out of bounds");
     refused("words", "--model", "a.obj", b"v one two three\n", "position");
 }
 
@@ -149,15 +155,15 @@ fn materials() {
 fn bad_textures() {
     refused("no_bytes", "--texture", "a.png", b"", "empty");
     let png = picture(image::ImageFormat::Png);
-    refused("truncated", "--texture", "a.png", &png[..png.len() / 2], "");
-    refused("text", "--texture", "a.png", b"this is no picture", "");
+    refused("truncated", "--texture", "a.png", &png[..png.len() / 2], "end of file");
+    refused("text", "--texture", "a.png", b"this is no picture", "signature");
     refused("unknown", "--texture", "a.xyz", b"this is no picture", "no image that can be read here");
     // A header that claims 100,000 × 100,000 pixels: 30 GB.
     let mut huge = png;
     huge[16..24].copy_from_slice(&[0, 1, 0x86, 0xa0, 0, 1, 0x86, 0xa0]);
     let checksum = crc32(&huge[12..29]);
     huge[29..33].copy_from_slice(&checksum.to_be_bytes());
-    refused("huge", "--texture", "a.png", &huge, "");
+    refused("huge", "--texture", "a.png", &huge, "exceeds limit");
 }
 
 /// The checksum of PNG chunks, bit by bit.
@@ -190,6 +196,32 @@ fn only_where_a_model_is_drawn() {
         .expect("the program starts");
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).starts_with("error: 'pivot' draws no model"), "{}", stderr(&output));
+    let folder = folder.as_path();
+    let output = draw(folder, &["--as-is"]);
+    assert_eq!(output.status.code(), Some(2), "as it is, but which model?");
+}
+
+#[test]
+fn faces_and_missing_coordinates() {
+    // A pyramid, seen with smooth and with flat normals.
+    let pyramid = "v -1 -1 1\nv 1 -1 1\nv 1 -1 -1\nv -1 -1 -1\nv 0 1 0\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\nf 4 3 2 1\n";
+    let colors = |name: &str, arguments: &[&str]| {
+        accepted(name, &[("a.obj", pyramid.as_bytes())], arguments);
+        let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join("files").join(name).join("picture.png");
+        let picture = image::open(file).expect("drawn").to_rgb8();
+        picture.pixels().map(|pixel| pixel.0).collect::<std::collections::BTreeSet<_>>().len()
+    };
+    let smooth = colors("smooth", &["--model", "a.obj"]);
+    let flat = colors("flat", &["--model", "a.obj", "--flat"]);
+    assert!(flat <= 5 && smooth > 20, "{flat} and {smooth} colors");
+
+    let png = picture(image::ImageFormat::Png);
+    let told = accepted(
+        "no_uvs",
+        &[("a.obj", pyramid.as_bytes()), ("a.png", &png)],
+        &["--model", "a.obj", "--texture", "a.png"],
+    );
+    assert!(told.contains("has no texture coordinates"), "{told}");
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Every picture of every chapter, drawn by the real program and compared pixel by pixel with the accepted one.
 //!
-//! Each variant is a test of its own: `cargo test --test snapshots affine`. Two more see that no variant is without a
-//! snapshot and no snapshot without a variant.
+//! Each variant is a test of its own, which fails if there is no accepted picture: `cargo test --test snapshots affine`.
+//! One more sees that there is no picture without a variant.
 
 #[path = "support/chapters.rs"]
 mod chapters;

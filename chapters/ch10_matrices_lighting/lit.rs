@@ -1,6 +1,6 @@
 //! The book's last program: a textured model under a light, and its last exercise, the spike bug.
 
-use glam::{DMat4, DVec3, dvec3};
+use glam::{DMat4, dvec3};
 use rasterbook::clip::ClipVertex;
 use rasterbook::cull::CullMode;
 use rasterbook::light::lambert;
@@ -11,7 +11,9 @@ use rasterbook::real::Real;
 use rasterbook::scanline::{StepLimit, Walk};
 use rasterbook::shader::{Shaded, Shader};
 use rasterbook::texture::{AddressMode, Texture};
-use rasterbook::transform::{Frustum, rotate_x_to_y, rotate_z_to_y, translate};
+use rasterbook::transform::{Frustum, about, rotate_x_to_y, rotate_z_to_y};
+
+use super::degrees;
 
 /// The camera of the book's last chapter.
 const CAMERA: Frustum = Frustum { left: -1.6, right: 1.6, bottom: -1.2, top: 1.2, near: 2.0, far: 10.0 };
@@ -49,28 +51,20 @@ impl Shader<5> for Lit {
 // ANCHOR_END: lit_shader
 
 // ANCHOR: model_matrix
-/// An angle in radians from degrees.
-pub(super) fn degrees(angle: f64) -> f64 {
-    angle * std::f64::consts::PI / 180.0
-}
-
-/// The turns of a frame, about the point (0, 0, 4), applied to a projection: P · T · Rz · Rx · T⁻¹.
-fn turned(clip_from_view: DMat4, frame: u32) -> DMat4 {
-    const PIVOT: DVec3 = dvec3(0.0, 0.0, 4.0);
+/// The turns of a frame, about the point (0, 0, 4): T · Rz · Rx · T⁻¹.
+fn turned(frame: u32) -> DMat4 {
     let angle = degrees(f64::from(45 + frame));
-    clip_from_view * translate(PIVOT) * rotate_x_to_y(angle) * rotate_z_to_y(angle) * translate(-PIVOT)
+    about(dvec3(0.0, 0.0, 4.0), rotate_x_to_y(angle) * rotate_z_to_y(angle))
 }
 // ANCHOR_END: model_matrix
 
 fn draw_subject(canvas: &mut Canvas, subject: &Subject, walk: Walk) {
     let state = RenderState { cull: CullMode::Back, walk, ..RenderState::default() };
     canvas.clear(&state);
+    let view_from_model = turned(canvas.frame);
+    let clip_from_model = CAMERA.matrix() * view_from_model;
     for part in &subject.model.parts {
-        let shader = Lit {
-            clip_from_model: CAMERA.matrix() * turned(DMat4::IDENTITY, canvas.frame),
-            view_from_model: turned(DMat4::IDENTITY, canvas.frame),
-            texture: subject.texture_of(part),
-        };
+        let shader = Lit { clip_from_model, view_from_model, texture: subject.texture_of(part) };
         canvas.draw(&part.mesh, &shader, &state);
     }
 }

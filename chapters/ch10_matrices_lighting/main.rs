@@ -23,7 +23,7 @@ pub(crate) const CHAPTER: Chapter = Chapter {
     name: "ch10_matrices_lighting",
     question: "How does a thing get its place, and its light and shade?",
     variants: &[
-        Variant::of_model("lit", lit::lit, ["pawn.obj", "wood.png"], "a model turns in the light: bright where it faces the light, never black; the few black specks are seams that this rasterizer leaves open")
+        Variant::of_model("lit", lit::lit, ["pawn.obj", "wood.png"], "a model turns in the light: bright where it faces the light, never black; a few specks are seams that the scanline fill leaves open")
             .source("sections 11.1 to 11.3").animated(TURN),
         Variant::with_pipeline("rotation", matrices::rotation, "a triangle turns about an upright axis, a degree a frame; it vanishes when we see its back")
             .source("section 10.6").animated(TURN),
@@ -44,6 +44,11 @@ pub(crate) const CHAPTER: Chapter = Chapter {
         Variant::with_pipeline("nearest", textures::nearest, "a brick floor to the horizon, the nearest texel for each pixel: it flickers and breaks up far away"),
     ],
 };
+
+/// An angle in radians from degrees.
+fn degrees(angle: f64) -> f64 {
+    angle * std::f64::consts::PI / 180.0
+}
 
 fn main() -> ExitCode {
     CHAPTER.main()

@@ -16,7 +16,7 @@ use rasterbook::transform::{
     Frustum, Viewport, about, look_at, normal_matrix, rotate_x_to_y, rotate_x_to_z, scale, translate,
 };
 
-use super::lit::degrees;
+use super::degrees;
 
 /// A textured surface without light.
 struct Textured {
@@ -49,9 +49,7 @@ pub(super) fn rotation(canvas: &mut Canvas) {
     let vertices = corners.map(|(x, y, uv)| (dvec3(x, y, 3.0), uv)).to_vec();
     let state = RenderState { cull: CullMode::Back, ..RenderState::default() };
     let shader = Textured { clip_from_model, texture: Texture::book() };
-    if let Ok(mesh) = Mesh::unindexed(vertices) {
-        canvas.render(&mesh, &shader, &state);
-    }
+    canvas.render(&Mesh::unindexed(vertices).expect("whole triangles"), &shader, &state);
 }
 // ANCHOR_END: rotation
 
@@ -117,9 +115,7 @@ pub(super) fn pivot(canvas: &mut Canvas) {
 
 fn draw_flat(canvas: &mut Canvas, corners: &[[f64; 2]], shader: &Plain, panel: Viewport) {
     let state = RenderState { viewport: Some(panel), ..RenderState::default() };
-    if let Ok(mesh) = Mesh::unindexed(corners.to_vec()) {
-        canvas.draw(&mesh, shader, &state);
-    }
+    canvas.draw(&Mesh::unindexed(corners.to_vec()).expect("whole triangles"), shader, &state);
 }
 
 /// Diffuse light in world space.
@@ -171,7 +167,8 @@ pub(super) fn camera(canvas: &mut Canvas) {
         ("pawn.obj", "wood.png", DVec3::splat(0.9), dvec3(-1.3, 1.26, -1.6), 1.0),
     ];
     for (model, texture, size, place, repeat) in things {
-        let (Ok(model), Ok(texture)) = (assets::model(model), assets::texture(texture)) else { continue };
+        let model = assets::model(model).expect("an asset");
+        let texture = assets::texture(texture).expect("an asset");
         // The models stand about (0, 0, 4).
         let world_from_model = translate(place) * scale(size) * translate(dvec3(0.0, 0.0, -4.0));
         for part in &model.parts {

@@ -14,7 +14,7 @@ use rasterbook::real::Real;
 use rasterbook::shader::{Shaded, Shader};
 use rasterbook::transform::{Frustum, normal_matrix, rotate_x_to_y, scale, translate};
 
-use super::lit::degrees;
+use super::degrees;
 
 /// A point of a ball of radius 1, and the normal that goes with it.
 #[derive(Clone, Copy)]
@@ -40,11 +40,7 @@ fn ball(rings: u32, segments: u32) -> Mesh<Corner> {
             }
         }
     }
-    well_formed(vertices)
-}
-
-fn well_formed(vertices: Vec<Corner>) -> Mesh<Corner> {
-    Mesh::unindexed(vertices).unwrap_or_else(|error| unreachable!("six corners a quad: {error}"))
+    Mesh::unindexed(vertices).expect("whole triangles")
 }
 
 /// The same ball with the normals of its faces.
@@ -55,7 +51,7 @@ fn faceted(ball: &Mesh<Corner>) -> Mesh<Corner> {
         let normal = (c - a).cross(b - a).normalize_or(DVec3::Y);
         vertices.extend([a, b, c].map(|position| Corner { position, normal }));
     }
-    well_formed(vertices)
+    Mesh::unindexed(vertices).expect("whole triangles")
 }
 
 // ANCHOR: frequency

@@ -40,12 +40,11 @@ pub(super) fn nearest(canvas: &mut Canvas) {
     let camera = Frustum { left: -0.8, right: 0.8, bottom: -0.6, top: 0.6, near: 1.0, far: 500.0 };
     let shader = Floor {
         clip_from_world: camera.matrix() * view_from_world,
-        texture: assets::texture("bricks.png").unwrap_or_else(|_| Texture::book()),
+        texture: assets::texture("bricks.png").expect("an asset"),
     };
     let corners = vec![[-300.0, -10.0], [300.0, -10.0], [300.0, 400.0], [-300.0, 400.0]];
     let state = RenderState { clear_color: Color::rgb(150, 190, 230), ..RenderState::default() };
-    if let Ok(mesh) = Mesh::indexed(corners, vec![0, 1, 2, 0, 2, 3]) {
-        canvas.render(&mesh, &shader, &state);
-    }
+    let mesh = Mesh::indexed(corners, vec![0, 1, 2, 0, 2, 3]).expect("two triangles");
+    canvas.render(&mesh, &shader, &state);
 }
 // ANCHOR_END: floor

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 
-use super::chapter::{Chapter, Mistake};
+use super::chapter::{Chapter, Mistake, Variant};
 use super::picture::Zoom;
 use crate::Framebuffer;
 
@@ -27,6 +27,7 @@ pub(super) struct Request {
     pub(super) model: Option<PathBuf>,
     pub(super) texture: Option<PathBuf>,
     pub(super) as_is: bool,
+    pub(super) flat: bool,
 }
 
 /// What `--compare` compares with.
@@ -59,6 +60,7 @@ impl Request {
             model: matches.get_one("model").cloned(),
             texture: matches.get_one("texture").cloned(),
             as_is: matches.get_flag("as-is"),
+            flat: matches.get_flag("flat"),
         })
     }
 }
@@ -79,7 +81,7 @@ fn command(chapter: &Chapter) -> Command {
         .disable_version_flag(true)
         .args(what_to_draw(chapter))
         .args(how_to_draw(chapter))
-        .args(subject())
+        .args(subject(chapter))
 }
 
 fn switch(id: &'static str, help: &'static str) -> Arg {
@@ -100,8 +102,10 @@ fn what_to_draw(chapter: &Chapter) -> [Arg; 3] {
 }
 
 /// What is drawn in place of a variant's own model.
-fn subject() -> [Arg; 3] {
+fn subject(chapter: &Chapter) -> [Arg; 4] {
     let path = value_parser!(PathBuf);
+    // Where no variant draws a model, help does not speak of them.
+    let is_hidden = !chapter.variants.iter().any(Variant::has_model);
     [
         option("model", "FILE.obj", "Draw this model (Wavefront OBJ), where the variant draws one")
             .value_parser(path.clone())
@@ -110,8 +114,10 @@ fn subject() -> [Arg; 3] {
             .value_parser(path)
             .conflicts_with("all"),
         switch("as-is", "Leave the model where it is and as large as it is, not centered and scaled to fit")
-            .conflicts_with("all"),
+            .requires("model"),
+        switch("flat", "Give the model the normals of its faces, so that every edge shows").requires("model"),
     ]
+    .map(|argument| argument.hide(is_hidden))
 }
 
 fn how_to_draw(chapter: &Chapter) -> [Arg; 6] {
@@ -142,13 +148,14 @@ fn how_to_draw(chapter: &Chapter) -> [Arg; 6] {
 /// The variants of a chapter, a line each: name, then what to look for.
 pub(super) fn list(chapter: &Chapter) -> String {
     let width = chapter.variants.iter().map(|variant| variant.name.len()).max().unwrap_or(0);
-    let line = |variant: &super::Variant| {
+    let line = |variant: &Variant| {
         let mistake = match variant.mistake {
             Mistake::No => String::new(),
             Mistake::MendedBy(remedy) => format!(" [mistake; remedy: {remedy}]"),
             Mistake::Unmended => " [mistake]".to_owned(),
         };
-        format!("  {:width$}  {}{mistake}\n", variant.name, variant.look)
+        let source = if variant.source.is_empty() { String::new() } else { format!(" ({})", variant.source) };
+        format!("  {:width$}  {}{source}{mistake}\n", variant.name, variant.look)
     };
     chapter.variants.iter().map(line).collect()
 }

@@ -30,8 +30,9 @@ const FILES: [(&str, &[u8]); 7] = [
     asset!("wood.png"),
 ];
 
-fn bytes_of(name: &str) -> &'static [u8] {
-    FILES.iter().find(|(file, _)| *file == name).map_or(&[], |(_, bytes)| bytes)
+fn bytes_of(name: &str) -> Result<&'static [u8], FileError> {
+    let file = FILES.iter().find(|(file, _)| *file == name);
+    file.map(|(_, bytes)| *bytes).ok_or_else(|| FileError::new(name.as_ref(), "is not in assets/"))
 }
 
 /// A model of `assets/`, such as `cube.obj`.
@@ -39,7 +40,7 @@ fn bytes_of(name: &str) -> &'static [u8] {
 /// # Errors
 /// If there is no such model.
 pub fn model(name: &str) -> Result<Model, FileError> {
-    Model::parse(bytes_of(name), name.as_ref(), NormalStyle::Smooth).map(|(model, _)| model)
+    Model::parse(bytes_of(name)?, name.as_ref(), NormalStyle::Smooth).map(|(model, _)| model)
 }
 
 /// A texture of `assets/`, such as `bricks.png`.
@@ -47,7 +48,7 @@ pub fn model(name: &str) -> Result<Model, FileError> {
 /// # Errors
 /// If there is no such texture.
 pub fn texture(name: &str) -> Result<Texture, FileError> {
-    decode_texture(bytes_of(name), name.as_ref()).map(|(texture, _)| texture)
+    decode_texture(bytes_of(name)?, name.as_ref()).map(|(texture, _)| texture)
 }
 
 /// All files of `assets/` but its page: names and contents.

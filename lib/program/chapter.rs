@@ -137,8 +137,12 @@ impl Variant {
     }
 
     /// The same, as an animation: the canvas says which frame to draw, and each can be drawn by itself.
+    ///
+    /// # Panics
+    /// If it has no frames, or none a second.
     #[must_use]
     pub const fn animated(self, animation: Animation) -> Self {
+        assert!(animation.frames > 0 && animation.rate > 0, "an animation has frames, and they move");
         Self { animation: Some(animation), ..self }
     }
 
@@ -166,7 +170,13 @@ impl Variant {
         Self { mistake: Mistake::Unmended, ..self }
     }
 
-    /// Whether `--model` and `--texture` mean anything to it.
+    /// Whether `--texture` means anything to it.
+    #[must_use]
+    pub const fn has_texture(&self) -> bool {
+        matches!(self.figure, Figure::Model(..))
+    }
+
+    /// Whether `--model` means anything to it.
     #[must_use]
     pub const fn has_model(&self) -> bool {
         matches!(self.figure, Figure::Model(..) | Figure::PlainModel(..))

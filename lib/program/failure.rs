@@ -1,4 +1,4 @@
-//! The two ways in which a program ends without doing what it was asked for.
+//! How a program ends that has not done all that it was asked for.
 
 use std::fmt;
 
@@ -28,7 +28,7 @@ impl Failure {
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Usage(reason) | Self::Runtime(reason) => write!(f, "error: {reason}"),
+            Self::Usage(reason) | Self::Runtime(reason) => f.write_str(reason),
             Self::ClosedPipe => Ok(()),
         }
     }

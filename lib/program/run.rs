@@ -14,6 +14,7 @@ use super::output::{Destination, note, say};
 use super::picture::{Zoom, difference, side_by_side, zoomed};
 use crate::Framebuffer;
 use crate::model::{FileError, Model, NormalStyle, load_texture};
+use crate::texture::Texture;
 
 /// Reads the arguments, does what they say, reports.
 pub(super) fn main(chapter: &Chapter) -> ExitCode {
@@ -29,7 +30,7 @@ pub(super) fn main(chapter: &Chapter) -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             if failure != Failure::ClosedPipe {
-                note(&failure.to_string());
+                note(&format!("error: {failure}"));
             }
             ExitCode::from(failure.exit_code())
         }
@@ -92,19 +93,12 @@ struct Sitting<'a> {
 }
 
 impl<'a> Sitting<'a> {
-    fn new(variant: &'a Variant, request: &Request) -> Result<Self, Failure> {
-        let is_asked = request.model.is_some() || request.texture.is_some() || request.as_is;
-        if is_asked && !variant.has_model() {
-            let reason = format!(
-                "'{}' draws no model: --model, --texture and --as-is mean nothing to it",
-                variant.name
-            );
-            return Err(Failure::Usage(reason));
-        }
-        let subject = match variant.subject()? {
-            None => None,
-            Some(own) => Some(subject_of(own, request)?),
-        };
+    fn new(variant: &'a Variant, request: &Request, given: &Given) -> Result<Self, Failure> {
+        let subject = variant.subject()?.map(|own| match &given.model {
+            // The chapters' own models are where they should be, and have their own texture.
+            None => Subject { texture: given.texture.clone().or(own.texture), ..own },
+            Some(model) => Subject { model: model.clone(), texture: given.texture.clone() },
+        });
         Ok(Self { variant, size: request.size.unwrap_or(variant.size), subject })
     }
 
@@ -116,37 +110,63 @@ impl<'a> Sitting<'a> {
 /// Where a model is brought to, and how far it reaches from there; the near plane of the book's view is at z = 2.
 const PLACE: (DVec3, f64) = (DVec3::new(0.0, 0.0, 4.0), 1.7);
 
-/// What was asked for in place of a variant's own model and texture.
-fn subject_of(own: Subject, request: &Request) -> Result<Subject, Failure> {
-    let failure = |error: FileError| Failure::Runtime(error.to_string());
-    let mut warnings = Vec::new();
-    // The chapters' own models are where they should be.
-    let (model, own_texture) = match &request.model {
-        None => (own.model, own.texture),
-        Some(path) => {
+fn check_model_options(variant: &Variant, request: &Request) -> Result<(), Failure> {
+    if !variant.has_model() && (request.model.is_some() || request.as_is || request.flat) {
+        let reason =
+            format!("'{}' draws no model: --model, --as-is and --flat mean nothing to it", variant.name);
+        return Err(Failure::Usage(reason));
+    }
+    if !variant.has_texture() && request.texture.is_some() {
+        return Err(Failure::Usage(format!(
+            "'{}' draws no texture: --texture means nothing to it",
+            variant.name
+        )));
+    }
+    Ok(())
+}
+
+/// What was given in place of a variant's own model and texture.
+struct Given {
+    model: Option<Model>,
+    texture: Option<Texture>,
+}
+
+impl Given {
+    /// Reads what was given, if it means something to all variants.
+    fn load(request: &Request, variants: &[&Variant]) -> Result<Self, Failure> {
+        for variant in variants {
+            check_model_options(variant, request)?;
+        }
+        let failure = |error: FileError| Failure::Runtime(error.to_string());
+        let mut warnings = Vec::new();
+        let mut model = None;
+        if let Some(path) = &request.model {
             let progress = progress_bar(0, "bytes");
-            let loaded = Model::load(path, NormalStyle::Smooth, |read, total| {
+            let style = if request.flat { NormalStyle::Flat } else { NormalStyle::Smooth };
+            let loaded = Model::load(path, style, |read, total| {
                 progress.set_length(total);
                 progress.set_position(read);
             });
             progress.finish_and_clear();
-            let (model, more) = loaded.map_err(failure)?;
+            let (loaded, more) = loaded.map_err(failure)?;
             warnings.extend(more);
-            (if request.as_is { model } else { model.fitted(PLACE.0, PLACE.1) }, None)
+            if request.texture.is_some() && !loaded.has_texture_coordinates() {
+                let odd = "has no texture coordinates: one texel covers all of it";
+                warnings.push(format!("{}: {odd}", path.display()));
+            }
+            model = Some(if request.as_is { loaded } else { loaded.fitted(PLACE.0, PLACE.1) });
         }
-    };
-    let texture = match &request.texture {
-        None => own_texture,
-        Some(path) => {
-            let (texture, more) = load_texture(path).map_err(failure)?;
+        let mut texture = None;
+        if let Some(path) = &request.texture {
+            let (loaded, more) = load_texture(path).map_err(failure)?;
             warnings.extend(more);
-            Some(texture)
+            texture = Some(loaded);
         }
-    };
-    for warning in warnings {
-        note(&format!("warning: {warning}"));
+        for warning in warnings {
+            note(&format!("warning: {warning}"));
+        }
+        Ok(Self { model, texture })
     }
-    Ok(Subject { model, texture })
 }
 
 /// The frame that was asked for, if the variant has it.
@@ -187,7 +207,10 @@ fn name_of(variant: &Variant, request: &Request) -> String {
 
 fn draw_one(variant: &Variant, request: &Request, destination: &Destination) -> Result<(), Failure> {
     let frame = frame_of(variant, request)?;
-    let picture = enlarged(Sitting::new(variant, request)?.draw(frame), request.zoom)?;
+    let picture = enlarged(
+        Sitting::new(variant, request, &Given::load(request, &[variant])?)?.draw(frame),
+        request.zoom,
+    )?;
     let path = destination.write(&name_of(variant, request), &picture)?;
     say(&path.display().to_string())
 }
@@ -196,7 +219,7 @@ fn animate(variant: &Variant, request: &Request, destination: &Destination) -> R
     let Some(animation) = variant.animation else {
         return Err(Failure::Usage(format!("'{}' is one picture: it cannot be animated", variant.name)));
     };
-    let sitting = Sitting::new(variant, request)?;
+    let sitting = Sitting::new(variant, request, &Given::load(request, &[variant])?)?;
     // The first frame shows whether the zoom makes sense.
     enlarged(sitting.draw(0), request.zoom)?;
     let draw = |frame| match request.zoom {
@@ -215,8 +238,9 @@ fn draw_comparison(
     destination: &Destination,
 ) -> Result<(), Failure> {
     let frame = frame_of(this, request)?;
-    let first = Sitting::new(this, request)?.draw(frame);
-    let second = Sitting::new(that, request)?.draw(frame);
+    let given = Given::load(request, &[this, that])?;
+    let first = Sitting::new(this, request, &given)?.draw(frame);
+    let second = Sitting::new(that, request, &given)?.draw(frame);
     let Some((marked, count)) = difference(&first, &second) else {
         let reason = format!("'{}' and '{}' differ in size: give --size", this.name, that.name);
         return Err(Failure::Usage(reason));
