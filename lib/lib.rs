@@ -24,7 +24,8 @@
 //!   ch9  pipeline      RenderState and draw(): the stages in their order
 //!   ch9  swap_chain    front and back buffer, present
 //!   ch11 light         ambient, Lambert, Phong, Blinn–Phong
-//!   ch11 model         models (OBJ) and textures from files
+//!   ch11 files         what is wrong with a file; textures from image files
+//!   ch11 model         models (OBJ) from files
 //!   …    program       what the eleven `main`s share; nothing above imports it
 //! ```
 //!
@@ -64,6 +65,8 @@ pub mod raster;
 pub mod pipeline;
 pub mod swap_chain;
 pub mod light;
+#[cfg(feature = "files")]
+pub mod files;
 #[cfg(feature = "files")]
 pub mod model;
 

@@ -4,7 +4,7 @@
 //! many steps are multiplied once, and one product takes every vertex to where it is seen. What is bright or dark says
 //! the angle between a surface and the light.
 //!
-//! New here: matrices (`lib/transform.rs`), light (`lib/light.rs`), models and textures from files (`lib/model.rs`).
+//! New here: matrices (`lib/transform.rs`), light (`lib/light.rs`), models and textures from files (`lib/model.rs`, `lib/files.rs`).
 //! The figures: `matrices.rs`, `lit.rs`, `shading.rs`, `textures.rs`. Book: chapters 10 and 11.
 
 mod lit;

@@ -8,7 +8,8 @@ use std::fmt::Write as _;
 
 use super::output::png_bytes;
 use super::picture::enlarged;
-use crate::model::{FileError, Model, NormalStyle, decode_texture};
+use crate::files::{FileError, decode_texture};
+use crate::model::{Model, NormalStyle};
 use crate::texture::Texture;
 use crate::{Color, Framebuffer, Rect};
 

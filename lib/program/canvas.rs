@@ -92,7 +92,7 @@ impl Subject {
     /// # Errors
     /// If there are no such files.
     pub fn of_assets(model: &str, texture: &str) -> Result<Self, Failure> {
-        let failure = |error: crate::model::FileError| Failure::Runtime(error.to_string());
+        let failure = |error: crate::files::FileError| Failure::Runtime(error.to_string());
         let model = super::assets::model(model).map_err(failure)?;
         let texture = super::assets::texture(texture).map_err(failure)?;
         Ok(Self { model, texture: Some(texture) })

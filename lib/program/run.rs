@@ -13,7 +13,8 @@ use super::chapter::{Chapter, Mistake, Variant};
 use super::output::{Destination, note, say};
 use super::picture::{Zoom, difference, side_by_side, zoomed};
 use crate::Framebuffer;
-use crate::model::{FileError, Model, NormalStyle, load_texture};
+use crate::files::{FileError, load_texture};
+use crate::model::{Model, NormalStyle};
 use crate::texture::Texture;
 
 /// Reads the arguments, does what they say, reports.
