@@ -92,6 +92,37 @@ pub fn blinn_phong<R: Real>(normal: Vector<R>, to_light: Vector<R>, to_eye: Vect
 }
 // ANCHOR_END: specular
 
+// ANCHOR: light
+/// Where light comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Light {
+    /// From far away: everywhere from the same direction (of length 1, towards the light), and equally bright.
+    Directional([f64; 3]),
+    /// From a point, of some intensity: at the distance r so much of it arrives as [`attenuation`] says, I / r².
+    Point {
+        /// Where it is.
+        position: [f64; 3],
+        /// How bright it is at the distance 1.
+        intensity: f64,
+    },
+}
+
+impl Light {
+    /// At a place: the direction towards the light, and how bright it is there.
+    #[must_use]
+    pub fn at<R: Real>(&self, place: Vector<R>) -> (Vector<R>, R) {
+        match *self {
+            Self::Directional(to_light) => (to_light.map(R::of), R::of(1.0)),
+            Self::Point { position, intensity } => {
+                let offset = from_fn(|i| R::of(position[i]) - place[i]);
+                let distance = dot(offset, offset).sqrt();
+                (offset.map(|component| component / distance), R::of(intensity) * attenuation(distance))
+            }
+        }
+    }
+}
+// ANCHOR_END: light
+
 /// Which highlight a surface has.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Highlight {
@@ -121,7 +152,7 @@ pub struct Material {
 
 impl Material {
     // ANCHOR: shade
-    /// The color (0..=255) of a surface of color `surface` under white light.
+    /// The color (0..=255) of a surface of color `surface` under white light of some intensity.
     ///
     /// As in the note, nothing keeps a broad highlight from reaching a little beyond where the surface turns away from
     /// the light.
@@ -130,10 +161,10 @@ impl Material {
         &self,
         surface: [R; 3],
         normal: Vector<R>,
-        to_light: Vector<R>,
+        (to_light, intensity): (Vector<R>, R),
         to_eye: Vector<R>,
     ) -> [R; 3] {
-        let diffuse = lambert(normal, to_light);
+        let diffuse = intensity * lambert(normal, to_light);
         let highlight = match self.highlight {
             Highlight::None => R::of(0.0),
             Highlight::Phong => phong(normal, to_light, to_eye, self.exponent),
@@ -141,7 +172,7 @@ impl Material {
         };
 
         let body = R::of(self.ambient) + R::of(self.diffuse) * diffuse;
-        let gloss = R::of(self.specular * 255.0) * highlight;
+        let gloss = R::of(self.specular * 255.0) * intensity * highlight;
         surface.map(|channel| (body * channel + gloss).min(R::of(255.0)))
     }
     // ANCHOR_END: shade
@@ -163,11 +194,14 @@ mod tests {
         let up = [0.0, 1.0, 0.0];
         let material =
             Material { ambient: 0.2, diffuse: 0.6, specular: 0.0, exponent: 1.0, highlight: Highlight::None };
-        let gray = |to_light| material.shade(WHITE, up, to_light, up)[0] / 255.0;
+        let gray = |to_light| material.shade(WHITE, up, (to_light, 1.0), up)[0] / 255.0;
         assert!((gray(up) - 0.8).abs() < 1e-12);
         assert!((gray([1.0, 0.0, 0.0]) - 0.2).abs() < 1e-12, "ambient alone");
         assert!((gray([0.6, 0.8, 0.0]) - 0.68).abs() < 1e-12);
         assert_eq!(attenuation(2.0), 0.25);
+        let lamp = Light::Point { position: [0.0, 3.0, 4.0], intensity: 50.0 };
+        assert_eq!(lamp.at([0.0; 3]), ([0.0, 0.6, 0.8], 2.0), "50 at the distance 1 is 2 at the distance 5");
+        assert_eq!(Light::Directional([0.0, 1.0, 0.0]).at([9.0; 3]), ([0.0, 1.0, 0.0], 1.0));
     }
 
     #[test]
@@ -204,7 +238,7 @@ mod tests {
         fn colors_stay_in_range(n in direction(), l in direction(), v in direction(), exponent in 1.0..100.0) {
             for highlight in [Highlight::None, Highlight::Phong, Highlight::BlinnPhong] {
                 let material = Material { ambient: 0.3, diffuse: 0.9, specular: 0.8, exponent, highlight };
-                for channel in material.shade(WHITE, n, l, v) {
+                for channel in material.shade(WHITE, n, (l, 1.0), v) {
                     prop_assert!((0.0..=255.0).contains(&channel));
                 }
             }

@@ -41,6 +41,7 @@ pub(crate) const CHAPTER: Chapter = Chapter {
         Variant::with_pipeline("gouraud", shading::gouraud, "light reckoned at the corners: smooth, but the highlight of the coarse ball has corners of its own"),
         Variant::with_pipeline("phong", shading::phong, "light reckoned at every pixel: a round highlight on the coarse ball too; the broad one below ends in a hard edge"),
         Variant::with_pipeline("blinn-phong", shading::blinn_phong, "the same with the half vector: the broad highlight below has no edge within the lit side"),
+        Variant::with_pipeline("distance", shading::distance, "above: parallel light, five balls alike; below: a lamp before the first ball, its light thins out with the square of the distance"),
         Variant::with_pipeline("nearest", textures::nearest, "a brick floor to the horizon, the nearest texel for each pixel: it flickers and breaks up far away"),
     ],
 };

@@ -6,7 +6,7 @@ use glam::{DMat3, DMat4, DVec3, dvec3};
 use rasterbook::Color;
 use rasterbook::clip::ClipVertex;
 use rasterbook::cull::CullMode;
-use rasterbook::light::{Highlight, Material, normalize};
+use rasterbook::light::{Highlight, Light, Material, normalize};
 use rasterbook::mesh::Mesh;
 use rasterbook::pipeline::RenderState;
 use rasterbook::program::Canvas;
@@ -72,13 +72,13 @@ struct Ball {
     frequency: Frequency,
     material: Material,
     color: [f64; 3],
-    to_light: [f64; 3],
+    light: Light,
 }
 
 impl Ball {
     fn light<R: Real>(&self, view: [R; 3], normal: [R; 3]) -> [R; 3] {
         let to_eye = normalize(view.map(|coordinate| -coordinate));
-        self.material.shade(self.color.map(R::of), normalize(normal), self.to_light.map(R::of), to_eye)
+        self.material.shade(self.color.map(R::of), normalize(normal), self.light.at(view), to_eye)
     }
 }
 
@@ -128,7 +128,7 @@ fn ball_at(place: DVec3, radius: f64, color: [f64; 3], frequency: Frequency, mat
         frequency,
         material,
         color,
-        to_light: normalize([-0.5, 0.75, -0.9]),
+        light: Light::Directional(normalize([-0.5, 0.75, -0.9])),
     }
 }
 
@@ -177,12 +177,30 @@ fn highlights(canvas: &mut Canvas, highlight: Highlight) {
     let grazing = Ball {
         view_from_model,
         normals: normal_matrix(view_from_model),
-        to_light: normalize([-0.9, 0.25, -0.6]),
+        light: Light::Directional(normalize([-0.9, 0.25, -0.6])),
         ..ball_at(DVec3::ZERO, 1.0, [120.0, 120.0, 130.0], Frequency::Fragment, broad)
     };
     canvas.draw(&ball(40, 60), &grazing, &state());
 }
 // ANCHOR_END: highlights
+
+// ANCHOR: distance
+/// Two rows of balls: parallel light above, a lamp before the ball on the left below.
+pub(super) fn distance(canvas: &mut Canvas) {
+    canvas.clear(&state());
+    let dull = Material { highlight: Highlight::None, ambient: 0.1, diffuse: 0.9, ..SHINY };
+    let mesh = ball(24, 36);
+    for (y, color) in [(1.1, TEAL), (-1.1, CORAL)] {
+        for i in 0..5 {
+            let place = dvec3(-2.8 + 1.4 * f64::from(i), y, 6.0);
+            let parallel = ball_at(place, 0.62, color, Frequency::Fragment, dull);
+            let lamp = Light::Point { position: [-2.8, y, 3.9], intensity: 3.0 };
+            let light = if y > 0.0 { Light::Directional([0.0, 0.0, -1.0]) } else { lamp };
+            canvas.draw(&mesh, &Ball { light, ..parallel }, &state());
+        }
+    }
+}
+// ANCHOR_END: distance
 
 // ANCHOR: normals
 /// A flattened, tilted ball; `normals` makes of the model matrix what turns its normals.
@@ -194,7 +212,7 @@ fn flattened(canvas: &mut Canvas, normals: impl Fn(DMat4) -> DMat3) {
     let shader = Ball {
         view_from_model,
         normals: normals(view_from_model),
-        to_light: normalize([-0.2, 1.0, -0.5]),
+        light: Light::Directional(normalize([-0.2, 1.0, -0.5])),
         ..ball_at(DVec3::ZERO, 1.0, [225.0, 190.0, 120.0], Frequency::Fragment, dull)
     };
     canvas.draw(&ball(40, 60), &shader, &state());
