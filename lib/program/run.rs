@@ -12,10 +12,10 @@ use super::canvas::Subject;
 use super::chapter::{Chapter, Mistake, Variant};
 use super::output::{Destination, note, say};
 use super::picture::{Zoom, difference, side_by_side, zoomed};
-use crate::Framebuffer;
 use crate::files::{FileError, load_texture};
 use crate::model::{Model, NormalStyle};
 use crate::texture::Texture;
+use crate::{Framebuffer, Rect};
 
 /// Reads the arguments, does what they say, reports.
 pub(super) fn main(chapter: &Chapter) -> ExitCode {
@@ -95,12 +95,14 @@ struct Sitting<'a> {
 
 impl<'a> Sitting<'a> {
     fn new(variant: &'a Variant, request: &Request, given: &Given) -> Result<Self, Failure> {
+        let size = request.size.unwrap_or(variant.size);
+        check_zoom(size, request.zoom)?;
         let subject = variant.subject()?.map(|own| match &given.model {
             // The chapters' own models are where they should be, and have their own texture.
             None => Subject { texture: given.texture.clone().or(own.texture), ..own },
             Some(model) => Subject { model: model.clone(), texture: given.texture.clone() },
         });
-        Ok(Self { variant, size: request.size.unwrap_or(variant.size), subject })
+        Ok(Self { variant, size, subject })
     }
 
     fn draw(&self, frame: u32) -> Framebuffer {
@@ -187,16 +189,21 @@ fn frame_of(variant: &Variant, request: &Request) -> Result<u32, Failure> {
 }
 
 /// The picture, enlarged if that was asked for.
-fn enlarged(picture: Framebuffer, zoom: Option<Zoom>) -> Result<Framebuffer, Failure> {
-    let Some(zoom) = zoom else { return Ok(picture) };
-    if let Some((x, y)) = zoom.center.filter(|&(x, y)| !picture.rect().contains(x, y)) {
-        return Err(Failure::Usage(format!(
-            "the pixel {x},{y} is outside the picture of {}×{} pixels",
-            picture.width(),
-            picture.height()
-        )));
+fn enlarged(picture: Framebuffer, zoom: Option<Zoom>) -> Framebuffer {
+    match zoom {
+        None => picture,
+        Some(zoom) => zoomed(&picture, zoom),
     }
-    Ok(zoomed(&picture, zoom))
+}
+
+/// Whether the pixel around which to zoom is in the picture.
+fn check_zoom((width, height): (u32, u32), zoom: Option<Zoom>) -> Result<(), Failure> {
+    match zoom.and_then(|zoom| zoom.center) {
+        Some((x, y)) if !Rect::sized(width, height).contains(x, y) => Err(Failure::Usage(format!(
+            "the pixel {x},{y} is outside the picture of {width}×{height} pixels"
+        ))),
+        _ => Ok(()),
+    }
 }
 
 /// The file name of a picture, without extension.
@@ -208,10 +215,8 @@ fn name_of(variant: &Variant, request: &Request) -> String {
 
 fn draw_one(variant: &Variant, request: &Request, destination: &Destination) -> Result<(), Failure> {
     let frame = frame_of(variant, request)?;
-    let picture = enlarged(
-        Sitting::new(variant, request, &Given::load(request, &[variant])?)?.draw(frame),
-        request.zoom,
-    )?;
+    let sitting = Sitting::new(variant, request, &Given::load(request, &[variant])?)?;
+    let picture = enlarged(sitting.draw(frame), request.zoom);
     let path = destination.write(&name_of(variant, request), &picture)?;
     say(&path.display().to_string())
 }
@@ -221,12 +226,7 @@ fn animate(variant: &Variant, request: &Request, destination: &Destination) -> R
         return Err(Failure::Usage(format!("'{}' is one picture: it cannot be animated", variant.name)));
     };
     let sitting = Sitting::new(variant, request, &Given::load(request, &[variant])?)?;
-    // The first frame shows whether the zoom makes sense.
-    enlarged(sitting.draw(0), request.zoom)?;
-    let draw = |frame| match request.zoom {
-        None => sitting.draw(frame),
-        Some(zoom) => zoomed(&sitting.draw(frame), zoom),
-    };
+    let draw = |frame| enlarged(sitting.draw(frame), request.zoom);
     let path =
         destination.write_animation(&name_of(variant, request), |format| encode(format, animation, draw))?;
     say(&path.display().to_string())
@@ -247,10 +247,7 @@ fn draw_comparison(
         return Err(Failure::Usage(reason));
     };
     let total = first.width() as usize * first.height() as usize;
-    let panels = [first, second, marked]
-        .into_iter()
-        .map(|panel| enlarged(panel, request.zoom))
-        .collect::<Result<Vec<_>, _>>()?;
+    let panels = [first, second, marked].map(|panel| enlarged(panel, request.zoom));
     let picture = side_by_side(&panels).ok_or_else(|| {
         Failure::Usage("three such pictures are too wide: give a smaller --size".to_owned())
     })?;

@@ -8,6 +8,8 @@ use std::sync::{Arc, Mutex};
 use image::RgbImage;
 use insta::internals::SnapshotContents;
 use insta::{Comparator, Settings, Snapshot};
+use rasterbook::program::picture;
+use rasterbook::{Color, Framebuffer};
 
 /// How many differing pixels a report names.
 const NAMED: usize = 5;
@@ -124,20 +126,31 @@ fn difference(name: &str, expected: &RgbImage, actual: &RgbImage) -> String {
         let _ = write!(report, "\n  ({column}, {}) was {was:?}, is {is:?}", height - 1 - row);
     }
 
-    let mut panels = RgbImage::from_pixel(width * 3 + 8, height, image::Rgb([128; 3]));
-    for (column, row, pixel) in expected.enumerate_pixels() {
-        let now = actual.get_pixel(column, row);
-        let marked =
-            if pixel == now { image::Rgb(pixel.0.map(|c| c / 4)) } else { image::Rgb([255, 0, 255]) };
-        panels.put_pixel(column, row, *pixel);
-        panels.put_pixel(width + 4 + column, row, marked);
-        panels.put_pixel(2 * (width + 4) + column, row, *now);
-    }
-    let mut bytes = std::io::Cursor::new(Vec::new());
-    if panels.write_to(&mut bytes, image::ImageFormat::Png).is_ok() {
-        save(name, "report", bytes.get_ref());
+    if let Some(panels) = panels(expected, actual) {
+        save(name, "report", &panels);
     }
     report
+}
+
+/// Expected | difference | actual, as a PNG file.
+fn panels(expected: &RgbImage, actual: &RgbImage) -> Option<Vec<u8>> {
+    let [before, now] = [expected, actual].map(framebuffer_of);
+    let (marked, _) = picture::difference(&before, &now)?;
+    let panels = picture::side_by_side(&[before, marked, now])?;
+    let channels = panels.rows_from_top().flatten().flat_map(|color| color.channels()).collect();
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    let image = RgbImage::from_raw(panels.width(), panels.height(), channels)?;
+    image.write_to(&mut bytes, image::ImageFormat::Png).ok()?;
+    Some(bytes.into_inner())
+}
+
+fn framebuffer_of(image: &RgbImage) -> Framebuffer {
+    let mut framebuffer = Framebuffer::new(image.width(), image.height());
+    for (x, row, pixel) in image.enumerate_pixels() {
+        let [red, green, blue] = pixel.0;
+        framebuffer.set(x as i32, (image.height() - 1 - row) as i32, Color::rgb(red, green, blue));
+    }
+    framebuffer
 }
 
 /// Puts a picture into the folder of failures.
