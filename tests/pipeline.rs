@@ -137,7 +137,11 @@ proptest! {
         // Limited everywhere: with the book's remedy the last pixel of a row that is a hair wide lies so many row widths
         // beyond its end that rounding shows.
         let walk = Walk { limit: StepLimit::Everywhere, ..Walk::default() };
-        for fragment in fragments(&points, RenderState { walk, ..RenderState::default() }) {
+        let recorder = Recorder::default();
+        render(&points, RenderState { walk, ..RenderState::default() }, &recorder);
+        // On an exactly level edge between two rows the book's clamp makes one row of one constant value.
+        prop_assume!(recorder.edges.borrow().iter().all(|[a, b]| a.y != b.y || a.y.fract() == 0.0));
+        for fragment in recorder.fragments.into_inner() {
             let place = dvec3(fragment.varyings[0], fragment.varyings[1], fragment.varyings[2]);
             let off = (place - a).dot(normal);
             prop_assert!(off.abs() < 1e-5 * fragment.w, "{} is {} off the plane", place, off);
@@ -235,12 +239,6 @@ impl Probe for Recorder {
         let FragmentEvent { x, y, w, varyings, verdict, color, .. } = *event;
         self.fragments.borrow_mut().push(Seen { x, y, w, varyings: varyings.to_vec(), verdict, color });
     }
-}
-
-fn fragments(points: &[Point], state: RenderState) -> Vec<Seen> {
-    let recorder = Recorder::default();
-    render(points, state, &recorder);
-    recorder.fragments.into_inner()
 }
 
 #[test]
