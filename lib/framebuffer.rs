@@ -14,6 +14,8 @@
 use std::fmt;
 use std::ops::Range;
 
+use crate::real::Scalar;
+
 /// A color of three channels with 8 bits each, as a screen shows it. Book, section 1.2.
 ///
 /// Stored in one 32-bit word, `0x00RRGGBB`.
@@ -61,6 +63,27 @@ impl Color {
     #[must_use]
     pub fn to_f64(self) -> [f64; 3] {
         self.channels().map(f64::from)
+    }
+}
+
+/// How a channel becomes a whole number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rounding {
+    /// The fraction is cut off, as the book does.
+    Truncate,
+    /// To the nearest, halves upwards: add ½, then truncate. Direct3D 11.3 functional specification, 3.2.3.6.
+    Nearest,
+}
+
+impl Rounding {
+    /// The color with channels in 0..=255; values outside are limited, NaN gives 0.
+    #[must_use]
+    pub fn color<R: Scalar>(self, channels: [R; 3]) -> Color {
+        let half = match self {
+            Self::Truncate => R::of(0.0),
+            Self::Nearest => R::of(0.5),
+        };
+        Color::truncated(channels.map(|channel| (channel + half).into()))
     }
 }
 

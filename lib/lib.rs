@@ -26,6 +26,8 @@
 //!   ch11 light         ambient, Lambert, Phong, Blinn–Phong
 //!   ch11 files         what is wrong with a file; textures from image files
 //!   ch11 model         models (OBJ) from files
+//!   more varyings      weights corrected by ω, derivatives
+//!   more edge          the exact rasterizer: edge functions, pixel centres, the top-left rule
 //!   …    program       what the eleven `main`s share; nothing above imports it
 //! ```
 //!
@@ -65,6 +67,8 @@ pub mod raster;
 pub mod pipeline;
 pub mod swap_chain;
 pub mod light;
+pub mod varyings;
+pub mod edge;
 #[cfg(feature = "files")]
 pub mod files;
 #[cfg(feature = "files")]

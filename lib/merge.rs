@@ -13,7 +13,8 @@ use std::array::from_fn;
 
 use crate::Color;
 use crate::depth::{DepthTest, Target};
-use crate::real::Real;
+use crate::framebuffer::Rounding;
+use crate::real::{Real, Scalar};
 use crate::shader::Shaded;
 
 /// How a fragment's color and the color already there make the new one. Second note, output merger.
@@ -70,18 +71,19 @@ pub enum Verdict {
 }
 
 // ANCHOR: merge
-/// Merges a fragment into the target at (x, y): depth test, blending, writing; fractions of channels are cut off.
-pub fn merge(
+/// Merges a fragment into the target at (x, y): depth test, blending, writing.
+pub fn merge<R: Scalar>(
     target: &mut Target,
     options: Merge,
-    x: i32,
-    y: i32,
-    depth: f64,
-    shaded: Shaded<f64>,
+    rounding: Rounding,
+    [x, y]: [i32; 2],
+    depth: R,
+    shaded: Shaded<R>,
 ) -> Verdict {
     if !shaded.keep {
         return Verdict::Discarded;
     }
+    let depth = depth.into();
     let passes = if options.depth_write {
         target.depth.test_and_set(x, y, depth, options.depth_test)
     } else {
@@ -90,8 +92,8 @@ pub fn merge(
     if !passes {
         return Verdict::Hidden;
     }
-    let there = target.color.get(x, y).unwrap_or_default().to_f64();
-    let color = Color::truncated(options.blend.apply(shaded.color, there));
+    let there = target.color.get(x, y).unwrap_or_default().to_f64().map(R::of);
+    let color = rounding.color(options.blend.apply(shaded.color, there));
     target.color.set(x, y, color);
     Verdict::Drawn(color)
 }
@@ -113,8 +115,10 @@ mod tests {
     fn what_becomes_of_a_fragment() {
         let mut target = Target::new(2, 1);
         target.clear(Color::BLACK, 1.0);
-        let red = Shaded::opaque([255.0, 0.0, 0.0]);
-        let mut merge = |options, depth, shaded| merge(&mut target, options, 0, 0, depth, shaded);
+        let red = Shaded::opaque([255.0_f64, 0.0, 0.0]);
+        let mut merge = |options, depth, shaded| {
+            merge(&mut target, options, Rounding::Truncate, [0, 0], depth, shaded)
+        };
         let untouched = Merge { depth_write: false, ..Merge::default() };
         assert_eq!(merge(untouched, 0.5, red), Verdict::Drawn(Color::RED));
         assert_eq!(merge(Merge::default(), 0.7, red), Verdict::Drawn(Color::RED), "0.5 was not stored");

@@ -7,12 +7,14 @@
 use crate::area::{is_drawable, twice_signed_area};
 use crate::clip::NdcVertex;
 use crate::depth::Target;
+use crate::framebuffer::Rounding;
 use crate::interpolate::{Projected, step_parameter_and_depth};
 use crate::merge::merge;
 use crate::pipeline::RenderState;
 use crate::probe::{FragmentEvent, Probe};
 use crate::scanline::Corner;
 use crate::shader::Shader;
+use crate::varyings::{TriangleVaryings, weight_gradients};
 
 /// Draws triangles, NDC → target.
 pub trait Rasterizer {
@@ -77,14 +79,22 @@ fn draw_triangle<S: Shader<N>, P: Probe, const N: usize>(
         }
     });
 
+    // How values change from pixel to pixel, for shaders that ask.
+    let varyings = TriangleVaryings::new(triangle, state.interpolation);
+    let gradients = weight_gradients(corners.map(|corner| corner.position));
+
     // 7. Rasterization: which pixels, and which values.
     step_parameter_and_depth(corners, state.interpolation, state.walk, window, |x, y, point, z| {
         // What is not linear on the screen is ω itself, which is interpolated like a value.
         let depth = if state.depth_encoding.is_linear_on_screen() { z } else { point.w };
         // 8. Fragment shading.
-        let shaded = shader.fragment(point.values);
+        let shaded = if S::USES_DERIVATIVES {
+            shader.fragment_with_derivatives(point.values, varyings.derivatives(&point, gradients))
+        } else {
+            shader.fragment(point.values)
+        };
         // 9. Depth test, and 10. blending.
-        let verdict = merge(target, state.merge, x, y, depth, shaded);
+        let verdict = merge(target, state.merge, Rounding::Truncate, [x, y], depth, shaded);
         probe.fragment(&FragmentEvent {
             x,
             y,

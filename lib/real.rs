@@ -62,6 +62,12 @@ pub trait Real:
     ) -> [Self; C];
 }
 
+/// A single number: one answer to a comparison, and a value that can be stored.
+pub trait Scalar: Real<Mask = bool> + Into<f64> {}
+
+impl Scalar for f64 {}
+impl Scalar for f32 {}
+
 /// Yes or no, for one number or for several.
 pub trait Mask: Copy + Debug {
     /// The same answer for all.

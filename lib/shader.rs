@@ -33,6 +33,7 @@
 
 use crate::clip::ClipVertex;
 use crate::real::{Mask, Real};
+use crate::varyings::Derivatives;
 
 /// A vertex shader and a fragment shader; what both need and what is the same for all vertices and fragments, the
 /// *uniforms*, are the fields of the struct.
@@ -49,6 +50,15 @@ pub trait Shader<const N: usize> {
     /// Varyings → color. Written for any number type, so that one source serves one fragment or several at a time;
     /// for that, it keeps no state.
     fn fragment<R: Real>(&self, varyings: [R; N]) -> Shaded<R>;
+
+    /// Whether fragments are shaded by [`Self::fragment_with_derivatives`].
+    const USES_DERIVATIVES: bool = false;
+
+    /// Varyings, and how they change from pixel to pixel → color: for filters, which need to know how much of a texture
+    /// a pixel covers.
+    fn fragment_with_derivatives<R: Real>(&self, varyings: [R; N], _: Derivatives<R, N>) -> Shaded<R> {
+        self.fragment(varyings)
+    }
 }
 
 /// What a fragment shader says of a fragment.

@@ -193,6 +193,27 @@ impl Viewport {
     }
     // ANCHOR_END: viewport
 
+    // ANCHOR: pixel_areas
+    /// NDC → screen: −1..1 becomes 0..width and 0..height; a pixel is a square, (i, j) the one from i to i + 1.
+    ///
+    /// ```text
+    ///   book:    ●─────●─────●─────●      4 pixels are 3 apart, −1 and 1 lie on the outer ones
+    ///
+    ///   here:  ┌─────┬─────┬─────┬─────┐
+    ///          │  ●  │  ●  │  ●  │  ●  │  4 pixels are 4 wide, −1 and 1 are the outer borders
+    ///          └─────┴─────┴─────┴─────┘
+    /// ```
+    ///
+    /// Source: Direct3D 11.3 functional specification, 3.3 and 15.6.
+    #[must_use]
+    pub fn pixel_areas(&self, ndc: DVec3) -> DVec2 {
+        DVec2::new(
+            self.x + (ndc.x + 1.0) / 2.0 * self.width,
+            self.y + (ndc.y + 1.0) / 2.0 * self.height,
+        )
+    }
+    // ANCHOR_END: pixel_areas
+
     /// The same as a matrix (chapter 10): `screen_from_ndc`.
     ///
     /// ```text

@@ -1,0 +1,360 @@
+//! Beyond the book: the exact rasterizer. Which pixels a triangle covers is decided with whole numbers, and neighbours
+//! that share an edge cover every pixel along it exactly once.
+//!
+//! Takes triangles in NDC, as the scanline rasterizer does, and stands behind the same door. A pixel is a square with
+//! its sample in the middle; three *edge functions* say on which side of each edge the sample lies.
+//!
+//! # Contract
+//!
+//! **Which pixels.** The viewport maps NDC −1..1 to 0..width and 0..height, y up; the pixel (i, j) is sampled at its
+//! centre (i + ½, j + ½). After clipping and the viewport, and before culling, x and y of each vertex are rounded to the
+//! nearest multiple of 1/256, halves away from zero. All decisions are made on these whole numbers, in 64-bit integers,
+//! which cannot overflow. The facing of a triangle is the sign of its area there; one without area is not drawn. A
+//! sample inside is covered; one on an edge is covered if the edge is a *top* edge (level, the triangle below it) or a
+//! *left* edge (not level, the triangle on its right), as seen on the screen; one on two edges, if both are.
+//!
+//! **Which values.** Weights are E / (sum of the three E), E the exact values of the edge functions at the centre, each
+//! converted with one rounding. 1/ω, V/ω and the depth are interpolated by these weights, and V = (V/ω) · 1/(1/ω). The
+//! depth is linear on the screen. All arithmetic is that of the number type: four operations, one rounding each.
+//!
+//! **Which rounding.** Channels are rounded to the nearest of 0..=255, halves upwards; NaN gives 0.
+//!
+//! Vertices outside twice the width and height of the view, and behind the eye, are clipped away before they are
+//! rounded (a *guard band*); a triangle that is still farther than 2¹⁶ pixels from the origin is not drawn.
+//!
+//! Sources: Direct3D 11.3 functional specification, 3.2.3.6 (colors), 3.3 (pixel centres), 3.4.1 (snapping), 3.4.2.1
+//! (top-left rule), 15.11.1 (facing); Vulkan specification, *Basic polygon rasterization* (values by weights); OpenGL
+//! 4.6, 14.6.1, asks only that one of two triangles sharing an edge covers a sample, which follows.
+//!
+//! ```
+//! use glam::dvec2;
+//! use rasterbook::Rect;
+//! use rasterbook::edge::Coverage;
+//!
+//! // Two triangles that share a diagonal through pixel centres: each centre belongs to one of them.
+//! let [a, b, c, d] = [dvec2(0.0, 0.0), dvec2(4.0, 0.0), dvec2(4.0, 4.0), dvec2(0.0, 4.0)];
+//! let lower = Coverage::new([a, b, c]).ok_or("no area")?;
+//! let upper = Coverage::new([a, c, d]).ok_or("no area")?;
+//! let window = Rect::sized(4, 4);
+//! assert_eq!(lower.pixels(window).count() + upper.pixels(window).count(), 16);
+//! # Ok::<(), &str>(())
+//! ```
+
+use std::fmt::Debug;
+use std::marker::PhantomData;
+
+use arrayvec::ArrayVec;
+use glam::{DVec2, dvec2, dvec4};
+
+use crate::Rect;
+use crate::area::Winding;
+use crate::clip::{ClipTest, ClipVertex, NdcVertex, Plane, Polygon, clip_triangle, fan};
+use crate::depth::Target;
+use crate::framebuffer::Rounding;
+use crate::merge::merge;
+use crate::pipeline::RenderState;
+use crate::probe::{FragmentEvent, Probe};
+use crate::raster::Rasterizer;
+use crate::real::Scalar;
+use crate::shader::{Shaded, Shader};
+use crate::varyings::{TriangleVaryings, WeightGradients, weight_gradients};
+
+/// The parts of a pixel into which positions are rounded, along x and along y.
+pub const SUBPIXELS: i64 = 256;
+/// Vertices as far from the origin as this, in pixels, cannot be drawn.
+///
+/// Differences of coordinates then have at most 26 bits and edge functions at most 53: exact in 64-bit integers, and in
+/// `f64` as well.
+const FARTHEST: f64 = 65_536.0;
+
+/// A place on the screen in 1/256 pixel, y up.
+pub type Subpixel = [i64; 2];
+
+/// The centre of the pixel (x, y).
+#[must_use]
+pub fn center(x: i32, y: i32) -> Subpixel {
+    [x, y].map(|i| i64::from(i) * SUBPIXELS + SUBPIXELS / 2)
+}
+
+/// Screen space, in pixels → the nearest place in 1/256 pixel; `None` if it is not finite or too far away.
+#[must_use]
+pub fn snap(position: DVec2) -> Option<Subpixel> {
+    let is_near = position.abs().max_element() <= FARTHEST && !position.is_nan();
+    is_near.then(|| position.to_array().map(|c| (c * SUBPIXELS as f64).round() as i64))
+}
+
+// ANCHOR: edge_function
+/// On which side of an edge from a to b a point is, and how far: twice the area of the triangle a, b, p.
+///
+/// ```text
+///              b
+///        +    ╱              E(p) = (b.x − a.x)(p.y − a.y) − (b.y − a.y)(p.x − a.x)
+///            ╱    −               = step_x · p.x + step_y · p.y + constant
+///           a
+/// ```
+///
+/// In units of 1/256 × 1/256 pixel. Positive on the left of the edge. From point to point it changes evenly, so that
+/// the next pixel costs one addition. Source: J. Pineda, A parallel algorithm for polygon rasterization, 1988.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct EdgeFunction {
+    /// How much more it is 1/256 pixel farther to the right.
+    pub step_x: i64,
+    /// How much more it is 1/256 pixel higher.
+    pub step_y: i64,
+    constant: i64,
+}
+
+impl EdgeFunction {
+    /// The function of the edge from a to b.
+    #[must_use]
+    pub fn new(a: Subpixel, b: Subpixel) -> Self {
+        let (step_x, step_y) = (a[1] - b[1], b[0] - a[0]);
+        Self { step_x, step_y, constant: -(step_x * a[0] + step_y * a[1]) }
+    }
+
+    /// Its value at a point.
+    #[must_use]
+    pub fn at(&self, [x, y]: Subpixel) -> i64 {
+        self.step_x * x + self.step_y * y + self.constant
+    }
+
+    /// Whether points on the edge itself belong to the triangle on its left: it is a top edge or a left edge.
+    ///
+    /// Against the clock round the triangle, a top edge runs to the left, and a left edge runs down.
+    ///
+    /// ```text
+    ///             top
+    ///        ┌──◄──────┐
+    ///   left ▼         ▲ right
+    ///        └──────►──┘
+    ///           bottom
+    /// ```
+    #[must_use]
+    pub fn is_top_left(&self) -> bool {
+        let (runs_down, is_level, runs_left) = (self.step_x > 0, self.step_x == 0, self.step_y < 0);
+        runs_down || (is_level && runs_left)
+    }
+
+    /// Whether a point at which the function has this value is on the triangle's side.
+    #[must_use]
+    pub fn covers(&self, value: i64) -> bool {
+        value > 0 || (value == 0 && self.is_top_left())
+    }
+}
+// ANCHOR_END: edge_function
+
+// ANCHOR: coverage
+/// Which points of the screen a triangle covers, and how much each vertex weighs there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Coverage {
+    /// The vertices, rounded to 1/256 pixel.
+    pub vertices: [Subpixel; 3],
+    /// Each edge belongs to the vertex opposite to it, and has the triangle on its left, whichever way it winds.
+    pub edges: [EdgeFunction; 3],
+    /// Twice the area, positive; the sum of the three edge functions anywhere.
+    pub twice_area: i64,
+    /// In which direction the vertices run.
+    pub winding: Winding,
+}
+
+impl Coverage {
+    /// Screen space, in pixels → coverage; `None` if there is nothing to draw: no area, or a vertex that is not finite or
+    /// too far away.
+    #[must_use]
+    pub fn new(corners: [DVec2; 3]) -> Option<Self> {
+        let [a, b, c] = [snap(corners[0])?, snap(corners[1])?, snap(corners[2])?];
+        let signed_area = EdgeFunction::new(a, b).at(c);
+        let edge = |from, to| match signed_area {
+            1.. => EdgeFunction::new(from, to),
+            _ => EdgeFunction::new(to, from),
+        };
+        let winding = Winding::of(signed_area as f64)?;
+        let edges = [edge(b, c), edge(c, a), edge(a, b)];
+        Some(Self { vertices: [a, b, c], edges, twice_area: signed_area.abs(), winding })
+    }
+
+    /// The values of the three edge functions at a point.
+    #[must_use]
+    pub fn edge_values(&self, point: Subpixel) -> [i64; 3] {
+        self.edges.map(|edge| edge.at(point))
+    }
+
+    /// Whether a point where the edge functions have these values belongs to the triangle: three signs that agree.
+    #[must_use]
+    pub fn covers(&self, values: [i64; 3]) -> bool {
+        self.edges[0].covers(values[0]) && self.edges[1].covers(values[1]) && self.edges[2].covers(values[2])
+    }
+
+    /// How much the second and the third vertex weigh where the edge functions have these values; the first has the
+    /// rest of 1. Outside the triangle, weights are negative.
+    #[must_use]
+    pub fn weights<R: Scalar>(&self, [_, second, third]: [i64; 3]) -> [R; 2] {
+        // Whole numbers of up to 53 bits are exact in f64; `of` rounds once.
+        let one_over_area = R::of(1.0) / R::of(self.twice_area as f64);
+        [R::of(second as f64) * one_over_area, R::of(third as f64) * one_over_area]
+    }
+
+    /// The area with the sign of the winding, doubled, in square pixels.
+    #[must_use]
+    pub fn signed_area(&self) -> f64 {
+        let area = self.twice_area as f64 / (SUBPIXELS * SUBPIXELS) as f64;
+        if self.winding == Winding::CounterClockwise { area } else { -area }
+    }
+
+    /// How the two weights change from pixel to pixel.
+    #[must_use]
+    pub fn weight_gradients<R: Scalar>(&self) -> WeightGradients<R> {
+        weight_gradients(self.vertices.map(|[x, y]| dvec2(x as f64, y as f64) / SUBPIXELS as f64))
+    }
+
+    /// The pixels of the window whose centres lie in the bounding box of the triangle.
+    #[must_use]
+    pub fn bounding_box(&self, window: Rect) -> Rect {
+        let [xs, ys] = [0, 1].map(|axis| self.vertices.map(|vertex| vertex[axis]));
+        // The first centre that is not below the lowest, and the one after the last that is not above the highest.
+        let first = |values: [i64; 3]| {
+            let lowest = values[0].min(values[1]).min(values[2]);
+            (lowest - SUBPIXELS / 2 + SUBPIXELS - 1).div_euclid(SUBPIXELS) as i32
+        };
+        let end = |values: [i64; 3]| {
+            let highest = values[0].max(values[1]).max(values[2]);
+            (highest - SUBPIXELS / 2).div_euclid(SUBPIXELS) as i32 + 1
+        };
+        Rect {
+            left: first(xs).max(window.left),
+            bottom: first(ys).max(window.bottom),
+            right: end(xs).min(window.right),
+            top: end(ys).min(window.top),
+        }
+    }
+
+    /// The pixels of the window whose centres are covered, row by row from the bottom, with the values of the edge
+    /// functions there.
+    pub fn pixels(&self, window: Rect) -> impl Iterator<Item = (i32, i32, [i64; 3])> + use<> {
+        let coverage = *self;
+        let area = self.bounding_box(window);
+        let steps = self.edges.map(|edge| edge.step_x * SUBPIXELS);
+        area.rows().flat_map(move |y| {
+            let mut values = coverage.edge_values(center(area.left, y));
+            area.columns().filter_map(move |x| {
+                let here = values;
+                for (value, step) in values.iter_mut().zip(steps) {
+                    *value += step;
+                }
+                coverage.covers(here).then_some((x, y, here))
+            })
+        })
+    }
+}
+// ANCHOR_END: coverage
+
+/// The exact rasterizer, computing in `R`: `f64` or `f32`. Coverage is the same in both.
+///
+/// See the [module](self) for its contract. What [`RenderState::walk`] says does not concern it.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Exact<R>(PhantomData<R>);
+
+impl<R: Scalar> Exact<R> {
+    /// The rasterizer.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self(PhantomData)
+    }
+}
+
+impl<R: Scalar> Rasterizer for Exact<R> {
+    fn draw<S: Shader<N>, P: Probe, const N: usize>(
+        &self,
+        triangles: impl Iterator<Item = [NdcVertex<N>; 3]>,
+        state: &RenderState,
+        shader: &S,
+        target: &mut Target,
+        probe: &P,
+    ) {
+        for triangle in triangles {
+            if triangle.iter().all(is_in_guard_band) {
+                draw_triangle::<R, S, P, N>(&triangle, state, shader, target, probe);
+            } else {
+                for piece in fan(cut_to_guard_band(triangle)) {
+                    draw_triangle::<R, S, P, N>(&piece, state, shader, target, probe);
+                }
+            }
+        }
+    }
+}
+
+// ANCHOR: guard_band
+/// How far beyond the border of the view a vertex may be, in NDC.
+const GUARD_BAND: f64 = 2.0;
+
+fn is_in_guard_band<const N: usize>(vertex: &NdcVertex<N>) -> bool {
+    vertex.w > 0.0 && vertex.position.truncate().abs().max_element() <= GUARD_BAND
+}
+
+/// The part of a triangle in the guard band: only for pipelines that do not clip to the view volume.
+fn cut_to_guard_band<const N: usize>(triangle: [NdcVertex<N>; 3]) -> ArrayVec<NdcVertex<N>, 9> {
+    const PLANES: [Plane; 4] = [
+        Plane::through_eye(dvec4(1.0, 0.0, 0.0, GUARD_BAND)),
+        Plane::through_eye(dvec4(-1.0, 0.0, 0.0, GUARD_BAND)),
+        Plane::through_eye(dvec4(0.0, 1.0, 0.0, GUARD_BAND)),
+        Plane::through_eye(dvec4(0.0, -1.0, 0.0, GUARD_BAND)),
+    ];
+    let clip = triangle.map(|vertex| ClipVertex {
+        position: (vertex.position * vertex.w).extend(vertex.w),
+        varyings: vertex.varyings,
+    });
+    let polygon: Polygon<N> = clip_triangle(clip, &PLANES, ClipTest::BeforeDivide);
+    polygon.into_iter().map(NdcVertex::from).collect()
+}
+// ANCHOR_END: guard_band
+
+// ANCHOR: draw_triangle
+fn draw_triangle<R: Scalar, S: Shader<N>, P: Probe, const N: usize>(
+    triangle: &[NdcVertex<N>; 3],
+    state: &RenderState,
+    shader: &S,
+    target: &mut Target,
+    probe: &P,
+) {
+    // Viewport: NDC → screen, and to 1/256 pixel.
+    let window = target.color.rect();
+    let viewport = state.viewport_in(window);
+    let coverage = Coverage::new(triangle.map(|vertex| viewport.pixel_areas(vertex.position)));
+
+    // Culling, by the signed area on the screen.
+    let signed_area = coverage.as_ref().map_or(0.0, Coverage::signed_area);
+    probe.piece(triangle, signed_area);
+    let Some(coverage) = coverage.filter(|_| !state.cull.culls(signed_area, state.front_face)) else {
+        probe.culled();
+        return;
+    };
+
+    // What the corners carry, made ready for weights.
+    let varyings = TriangleVaryings::<R, N>::new(triangle, state.interpolation);
+    let gradients = coverage.weight_gradients();
+
+    for (x, y, values) in coverage.pixels(window) {
+        // Interpolation.
+        let weights = coverage.weights(values);
+        let point = varyings.at(weights);
+        let depth = if state.depth_encoding.is_linear_on_screen() { varyings.depth_at(weights) } else { point.w };
+        // Fragment shading.
+        let shaded: Shaded<R> = if S::USES_DERIVATIVES {
+            shader.fragment_with_derivatives(point.values, varyings.derivatives(&point, gradients))
+        } else {
+            shader.fragment(point.values)
+        };
+        // Depth test, and blending.
+        let verdict = merge(target, state.merge, Rounding::Nearest, [x, y], depth, shaded);
+        probe.fragment(&FragmentEvent {
+            x,
+            y,
+            w: point.w.into(),
+            depth: depth.into(),
+            varyings: &point.values.map(Into::into),
+            color: shaded.color.map(Into::into),
+            verdict,
+        });
+    }
+}
+// ANCHOR_END: draw_triangle

@@ -1,0 +1,231 @@
+//! Beyond the book: interpolation by weights, corrected by ω, for rasterizers that know where in a triangle they are.
+//!
+//! Chapter 3 finds weights by areas, chapter 5 corrects a parameter along a row; here the weights themselves are
+//! corrected. Takes what the corners of a triangle carry and weights on the screen; gives varyings, the depth, and how
+//! the varyings change from pixel to pixel.
+//!
+//! ```
+//! use rasterbook::varyings::perspective_weights;
+//!
+//! // Half-way on the screen between a near point (ω = 1) and a far one (ω = 3) is a quarter of the way in space.
+//! assert_eq!(perspective_weights([0.5, 0.5, 0.0], [1.0, 3.0, 1.0]), [0.75, 0.25, 0.0]);
+//! ```
+
+use std::array::from_fn;
+
+use glam::DVec2;
+
+use crate::area::twice_signed_area;
+use crate::clip::NdcVertex;
+use crate::interpolate::{Interpolation, Projected};
+use crate::real::{Mask, Real};
+
+// ANCHOR: perspective_weights
+/// The weights of three points in space, from their weights on the screen.
+///
+/// ```text
+///             α′/ωa                                  1     α′   β′   γ′
+///     α = ───────────────────────     and with it   ── =  ── + ── + ──
+///         α′/ωa + β′/ωb + γ′/ωc                      ω     ωa   ωb   ωc
+/// ```
+///
+/// Where all ω are equal, as under an orthographic projection, nothing changes. Where that cannot be reckoned, because
+/// an ω or the sum below the line is zero, the weights stay as they are. Source: first note, formulas 4 to 7.
+#[must_use]
+pub fn perspective_weights<R: Real>(weights: [R; 3], w: [R; 3]) -> [R; 3] {
+    let zero = R::of(0.0);
+    let is_nonzero = |x: R| x.is_less(zero).not().and(zero.is_less(x).not()).not();
+    let parts: [R; 3] = from_fn(|i| weights[i] / w[i]);
+    let sum = parts[0] + parts[1] + parts[2];
+    let is_possible = w.into_iter().fold(is_nonzero(sum), |mask, w| mask.and(is_nonzero(w)));
+    from_fn(|i| R::select(is_possible, parts[i] / sum, weights[i]))
+}
+// ANCHOR_END: perspective_weights
+
+/// How varyings change from one pixel to the next: to the right, and upwards.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Derivatives<R, const N: usize> {
+    /// ∂V/∂x, per pixel.
+    pub dx: [R; N],
+    /// ∂V/∂y, per pixel.
+    pub dy: [R; N],
+}
+
+/// How the weights of the second and the third corner change per pixel, to the right and upwards.
+pub type WeightGradients<R> = [[R; 2]; 2];
+
+/// The gradients of the weights in a triangle on the screen, in pixels.
+#[must_use]
+pub fn weight_gradients<R: Real>([a, b, c]: [DVec2; 3]) -> WeightGradients<R> {
+    let area = twice_signed_area(a, b, c);
+    [[c.y - a.y, a.y - b.y], [a.x - c.x, b.x - a.x]].map(|row| row.map(|change| R::of(change / area)))
+}
+
+/// Something that changes evenly on the screen, given by its value at the first corner and the way to the other two.
+#[derive(Clone, Copy, Debug)]
+struct Even<R> {
+    first: R,
+    to_second: R,
+    to_third: R,
+}
+
+impl<R: Real> Even<R> {
+    fn new([first, second, third]: [R; 3]) -> Self {
+        Self { first, to_second: second - first, to_third: third - first }
+    }
+
+    fn at(&self, [second, third]: [R; 2]) -> R {
+        self.first + self.to_second * second + self.to_third * third
+    }
+
+    fn change(&self, [second, third]: [R; 2]) -> R {
+        self.to_second * second + self.to_third * third
+    }
+}
+
+// ANCHOR: triangle_varyings
+/// What the corners of a triangle carry, made ready for weights: 1/ω, V/ω and the depth change evenly on the screen.
+#[derive(Clone, Copy, Debug)]
+pub struct TriangleVaryings<R, const N: usize> {
+    /// 1/ω; for [`Interpolation::Affine`] ω itself.
+    distance: Even<R>,
+    /// V/ω; for [`Interpolation::Affine`] V itself.
+    values: [Even<R>; N],
+    depth: Even<R>,
+    interpolation: Interpolation,
+}
+
+impl<R: Real, const N: usize> TriangleVaryings<R, N> {
+    /// Divides what is to be interpolated by ω, once for each corner.
+    #[must_use]
+    pub fn new(corners: &[NdcVertex<N>; 3], interpolation: Interpolation) -> Self {
+        let w = from_fn(|i| R::of(corners[i].w));
+        let value = |i: usize, k: usize| R::of(corners[i].varyings[k]);
+        let depth = Even::new(from_fn(|i| R::of(corners[i].position.z)));
+        let (distance, values) = match interpolation {
+            Interpolation::Affine => (w, from_fn(|k| Even::new(from_fn(|i| value(i, k))))),
+            Interpolation::PerspectiveCorrect | Interpolation::Reciprocal => {
+                let over_w = w.map(|w| R::of(1.0) / w);
+                (over_w, from_fn(|k| Even::new(from_fn(|i| value(i, k) * over_w[i]))))
+            }
+        };
+        Self { distance: Even::new(distance), values, depth, interpolation }
+    }
+
+    /// ω and the varyings where the second and the third corner have these weights.
+    #[must_use]
+    pub fn at(&self, weights: [R; 2]) -> Projected<R, N> {
+        let distance = self.distance.at(weights);
+        let values = from_fn(|k| self.values[k].at(weights));
+        match self.interpolation {
+            Interpolation::Affine => Projected { w: distance, values },
+            Interpolation::PerspectiveCorrect | Interpolation::Reciprocal => {
+                let w = R::of(1.0) / distance;
+                Projected { w, values: values.map(|value| value * w) }
+            }
+        }
+    }
+
+    /// The depth there.
+    #[must_use]
+    pub fn depth_at(&self, weights: [R; 2]) -> R {
+        self.depth.at(weights)
+    }
+
+    /// How the varyings change from pixel to pixel at a point.
+    ///
+    /// From V = (V/ω) / (1/ω) by the quotient rule: ∂V = ω (∂(V/ω) − V ∂(1/ω)).
+    #[must_use]
+    pub fn derivatives(
+        &self,
+        point: &Projected<R, N>,
+        [right, up]: WeightGradients<R>,
+    ) -> Derivatives<R, N> {
+        let along = |direction: [R; 2]| {
+            let distance = self.distance.change(direction);
+            from_fn(|k| {
+                let change = self.values[k].change(direction);
+                match self.interpolation {
+                    Interpolation::Affine => change,
+                    Interpolation::PerspectiveCorrect | Interpolation::Reciprocal => {
+                        (change - point.values[k] * distance) * point.w
+                    }
+                }
+            })
+        };
+        Derivatives { dx: along(right), dy: along(up) }
+    }
+}
+// ANCHOR_END: triangle_varyings
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::dvec3;
+    use proptest::prelude::*;
+
+    fn weights() -> impl Strategy<Value = [f64; 3]> {
+        (0.0..1.0, 0.0..1.0).prop_map(|(a, b): (f64, f64)| {
+            let [b, c] = [b * (1.0 - a), (1.0 - b) * (1.0 - a)];
+            [a, b, c]
+        })
+    }
+
+    fn corners(w: [f64; 3], values: [f64; 3]) -> [NdcVertex<1>; 3] {
+        from_fn(|i| NdcVertex { position: dvec3(0.0, 0.0, w[i]), w: w[i], varyings: [values[i]] })
+    }
+
+    #[test]
+    fn what_cannot_be_corrected_stays() {
+        let weights = [0.2, 0.3, 0.5];
+        assert_eq!(perspective_weights(weights, [0.0; 3]), weights, "all ω are zero");
+        assert_eq!(perspective_weights(weights, [1.0, 0.0, 2.0]), weights, "one is");
+        assert_eq!(perspective_weights([0.5, 0.5, 0.0], [1.0, -1.0, 1.0]), [0.5, 0.5, 0.0], "their sum is");
+    }
+
+    #[test]
+    fn gradients_of_weights() {
+        use glam::dvec2;
+        // The second weight grows by a quarter a pixel to the right, the third by an eighth a pixel upwards.
+        let gradients: WeightGradients<f64> =
+            weight_gradients([dvec2(1.0, 1.0), dvec2(5.0, 1.0), dvec2(1.0, 9.0)]);
+        assert_eq!(gradients, [[0.25, 0.0], [0.0, 0.125]]);
+    }
+
+    proptest! {
+        #[test]
+        fn an_orthographic_projection_needs_no_correction(weights in weights(), w in 0.1..10.0) {
+            let corrected = perspective_weights(weights, [w; 3]);
+            prop_assert!((0..3).all(|i| (corrected[i] - weights[i]).abs() < 1e-14));
+        }
+
+        #[test]
+        fn both_ways_to_a_value_agree(weights in weights(), w in prop::array::uniform3(0.1..10.0), v in prop::array::uniform3(-5.0..5.0)) {
+            let corrected = perspective_weights(weights, w);
+            let by_weights: f64 = (0..3).map(|i| corrected[i] * v[i]).sum();
+            let varyings = TriangleVaryings::<f64, 1>::new(&corners(w, v), Interpolation::PerspectiveCorrect);
+            let point = varyings.at([weights[1], weights[2]]);
+            prop_assert!((point.values[0] - by_weights).abs() < 1e-11);
+            let one_over_w: f64 = (0..3).map(|i| weights[i] / w[i]).sum();
+            prop_assert!((point.w - 1.0 / one_over_w).abs() < 1e-11);
+        }
+
+        #[test]
+        fn derivatives_are_the_limit_of_differences(
+            weights in weights(), w in prop::array::uniform3(0.5..5.0), v in prop::array::uniform3(-5.0..5.0),
+            affine in any::<bool>(),
+        ) {
+            const STEP: f64 = 1e-6;
+            let interpolation = if affine { Interpolation::Affine } else { Interpolation::PerspectiveCorrect };
+            let varyings = TriangleVaryings::<f64, 1>::new(&corners(w, v), interpolation);
+            let gradients = [[0.3, -0.1], [-0.2, 0.4]];
+            let at = |steps: [f64; 2]| {
+                varyings.at(from_fn(|k| weights[k + 1] + gradients[0][k] * steps[0] + gradients[1][k] * steps[1]))
+            };
+            let derivatives = varyings.derivatives(&at([0.0, 0.0]), gradients);
+            let slope = |ahead: [f64; 2], behind: [f64; 2]| (at(ahead).values[0] - at(behind).values[0]) / (2.0 * STEP);
+            prop_assert!((derivatives.dx[0] - slope([STEP, 0.0], [-STEP, 0.0])).abs() < 1e-5);
+            prop_assert!((derivatives.dy[0] - slope([0.0, STEP], [0.0, -STEP])).abs() < 1e-5);
+        }
+    }
+}
