@@ -9,7 +9,8 @@
 use std::process::ExitCode;
 
 use glam::dvec2;
-use rasterbook::interpolate::{barycentric_weights, step_values};
+use rasterbook::edge::{Coverage, center};
+use rasterbook::interpolate::step_values;
 use rasterbook::program::{Chapter, Variant, picture};
 use rasterbook::scanline::{Corner, StepLimit, Walk};
 use rasterbook::texture::{AddressMode, Texture};
@@ -78,11 +79,14 @@ fn texture(framebuffer: &mut Framebuffer) {
 // ANCHOR: weights
 /// The three weights at every pixel as red, green and blue, with a line at every tenth.
 fn weights(framebuffer: &mut Framebuffer) {
-    let triangle = [dvec2(70.0, 50.0), dvec2(590.0, 130.0), dvec2(250.0, 440.0)];
+    // The value of an edge function is twice the area of the small triangle over that edge.
+    let coverage =
+        Coverage::new([dvec2(70.0, 50.0), dvec2(590.0, 130.0), dvec2(250.0, 440.0)]).expect("area");
     for y in framebuffer.rect().rows() {
         for x in framebuffer.rect().columns() {
-            let weights = barycentric_weights(dvec2(f64::from(x), f64::from(y)), triangle);
-            let inside = weights.iter().all(|&weight| weight >= 0.0);
+            let areas = coverage.edge_values(center(x, y));
+            let weights = areas.map(|area| area as f64 / coverage.twice_area as f64);
+            let inside = coverage.covers(areas);
             let on_tenth =
                 weights.iter().any(|&weight| (weight * 10.0 - (weight * 10.0).round()).abs() < 0.025);
             // Beyond an edge the weight of the opposite corner is negative; dim, so that the triangle stands out.

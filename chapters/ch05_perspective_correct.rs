@@ -9,11 +9,13 @@
 use std::process::ExitCode;
 
 use glam::{dvec2, dvec3};
+use rasterbook::edge::Coverage;
 use rasterbook::interpolate::{Interpolation, Projected, step_parameter, step_values};
 use rasterbook::program::{Chapter, Variant};
 use rasterbook::scanline::{Corner, Walk};
 use rasterbook::texture::{AddressMode, Texture};
 use rasterbook::transform::{perspective, perspective_divide};
+use rasterbook::varyings::perspective_weights;
 use rasterbook::{Color, Framebuffer, Rect};
 
 pub(crate) const CHAPTER: Chapter = Chapter {
@@ -29,6 +31,8 @@ pub(crate) const CHAPTER: Chapter = Chapter {
         Variant::new("square", square, "two triangles make a square that faces us: no seam, no bend").source("section 5.2, Figure 5-2"),
         Variant::new("reciprocal", reciprocal, "the tilted square again, by way of 1/ω and V/ω: compare it with 'correct', not one pixel differs")
             .source("section 5.5.4"),
+        Variant::new("barycentric", barycentric, "the tilted square by weights: those of areas on the screen, each divided by its corner's ω")
+            .source("first note"),
         Variant::new("floor", floor, "a checkered floor to the horizon: every line is straight and the squares shrink evenly"),
         Variant::new("floor-affine", floor_affine, "the same two triangles, interpolated on the screen: the floor folds along the diagonal")
             .mended_by("floor"),
@@ -87,6 +91,22 @@ fn reciprocal(framebuffer: &mut Framebuffer) {
     textured(framebuffer, &square_to(TILTED_X, TILTED_Z), Interpolation::Reciprocal);
 }
 // ANCHOR_END: textured
+
+// ANCHOR: barycentric
+/// The tilted square by weights, pixel by pixel; the weights of areas are corrected by ω.
+fn barycentric(framebuffer: &mut Framebuffer) {
+    let texture = Texture::book();
+    for triangle in square_to(TILTED_X, TILTED_Z) {
+        let coverage = Coverage::new(triangle.map(|corner| corner.position)).expect("area");
+        for (x, y, areas) in coverage.pixels(framebuffer.rect()) {
+            let on_screen = areas.map(|area| area as f64 / coverage.twice_area as f64);
+            let in_space = perspective_weights(on_screen, triangle.map(|corner| corner.attributes.w));
+            let uv = [0, 1].map(|k| (0..3).map(|i| in_space[i] * triangle[i].attributes.values[k]).sum());
+            framebuffer.set(x, y, Color::truncated(texture.nearest::<f64>(uv, AddressMode::Clamp)));
+        }
+    }
+}
+// ANCHOR_END: barycentric
 
 // ANCHOR: facing
 /// Draws triangles as chapter 3 does: values by equal steps on the screen, ω unused.

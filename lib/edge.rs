@@ -337,7 +337,8 @@ fn draw_triangle<R: Scalar, S: Shader<N>, P: Probe, const N: usize>(
         // Interpolation.
         let weights = coverage.weights(values);
         let point = varyings.at(weights);
-        let depth = if state.depth_encoding.is_linear_on_screen() { varyings.depth_at(weights) } else { point.w };
+        let depth =
+            if state.depth_encoding.is_linear_on_screen() { varyings.depth_at(weights) } else { point.w };
         // Fragment shading.
         let shaded: Shaded<R> = if S::USES_DERIVATIVES {
             shader.fragment_with_derivatives(point.values, varyings.derivatives(&point, gradients))

@@ -11,7 +11,7 @@
 //!   ch2  scanline      sort, split, walk the edges, emit spans: coverage only, no color
 //!   ch3  real          the numbers that interpolation is written for
 //!   ch3  interpolate   barycentric weights, affine and perspective-correct interpolation
-//!   ch3  texture       texels and address modes
+//!   ch3  texture       texels, address modes, bilinear filter
 //!   ch4  transform     projection, (ch8) frustum, viewport, (ch10) matrices
 //!   ch6  depth         encodings, the test, the target: color and depth
 //!   ch7  clip          signed distance to a plane, Sutherland–Hodgman, clip volumes, the divide
@@ -23,11 +23,14 @@
 //!   ch9  raster        the door of all rasterizers; the book's scanline rasterizer
 //!   ch9  pipeline      RenderState and draw(): the stages in their order
 //!   ch9  swap_chain    front and back buffer, present
-//!   ch11 light         ambient, Lambert, Phong, Blinn–Phong
+//!   ch11 light         ambient, Lambert, Phong, Blinn–Phong, normal maps
 //!   ch11 files         what is wrong with a file; textures from image files
 //!   ch11 model         models (OBJ) from files
+//!   more mipmap        smaller copies of a texture, levels of detail
+//!   more srgb          what the numbers of a picture mean as light
 //!   more varyings      weights corrected by ω, derivatives
 //!   more edge          the exact rasterizer: edge functions, pixel centres, the top-left rule
+//!   more antialias     several samples in each pixel
 //!   …    program       what the eleven `main`s share; nothing above imports it
 //! ```
 //!
@@ -67,8 +70,11 @@ pub mod raster;
 pub mod pipeline;
 pub mod swap_chain;
 pub mod light;
+pub mod mipmap;
+pub mod srgb;
 pub mod varyings;
 pub mod edge;
+pub mod antialias;
 #[cfg(feature = "files")]
 pub mod files;
 #[cfg(feature = "files")]

@@ -92,6 +92,25 @@ pub fn blinn_phong<R: Real>(normal: Vector<R>, to_light: Vector<R>, to_eye: Vect
 }
 // ANCHOR_END: specular
 
+// ANCHOR: mapped_normal
+/// The normal that a normal map gives to a point of a surface: the texel's channels, 0..=255, are x, y and z of a vector
+/// in the surface's own *tangent space*, −1..1.
+///
+/// ```text
+///        n (blue)          x runs along t, where u grows, y along b, where v grows, and
+///        │   ╱ b (green)   z along n, off the surface. (128, 128, 255) leaves the normal
+///        │ ╱               as it is, which is why such maps are bluish.
+///        └───── t (red)
+/// ```
+///
+/// The axes are of length 1 and in any space; the normal is in the same. Source: first note (a normal map on a quad).
+#[must_use]
+pub fn mapped_normal<R: Real>(texel: Vector<R>, [t, b, n]: [Vector<R>; 3]) -> Vector<R> {
+    let [x, y, z] = texel.map(|channel| channel / R::of(127.5) - R::of(1.0));
+    normalize(from_fn(|i| t[i] * x + b[i] * y + n[i] * z))
+}
+// ANCHOR_END: mapped_normal
+
 // ANCHOR: light
 /// Where light comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -116,9 +116,8 @@ mod tests {
         let mut target = Target::new(2, 1);
         target.clear(Color::BLACK, 1.0);
         let red = Shaded::opaque([255.0_f64, 0.0, 0.0]);
-        let mut merge = |options, depth, shaded| {
-            merge(&mut target, options, Rounding::Truncate, [0, 0], depth, shaded)
-        };
+        let mut merge =
+            |options, depth, shaded| merge(&mut target, options, Rounding::Truncate, [0, 0], depth, shaded);
         let untouched = Merge { depth_write: false, ..Merge::default() };
         assert_eq!(merge(untouched, 0.5, red), Verdict::Drawn(Color::RED));
         assert_eq!(merge(Merge::default(), 0.7, red), Verdict::Drawn(Color::RED), "0.5 was not stored");

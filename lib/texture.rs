@@ -16,6 +16,7 @@
 use std::sync::Arc;
 
 use crate::Color;
+use crate::interpolate::linear;
 use crate::real::Real;
 
 /// Which texel is meant by coordinates outside 0..=1.
@@ -26,20 +27,37 @@ pub enum AddressMode {
     Clamp,
     /// The picture again, side by side, without end.
     Repeat,
+    /// The picture and its mirror image by turns, so that no seam shows.
+    Mirror,
 }
 
 impl AddressMode {
+    // ANCHOR: address_mode
     /// The texel index in 0..count that the whole number `index` stands for.
     ///
-    /// Whatever comes in, NaN too, what goes out is inside.
-    fn apply<R: Real>(self, index: R, count: u32) -> R {
-        let count = R::of(f64::from(count));
+    /// ```text
+    ///   index    −3 −2 −1  0  1  2  3  4  5        (count 3)
+    ///   Clamp     0  0  0  0  1  2  2  2  2
+    ///   Repeat    0  1  2  0  1  2  0  1  2
+    ///   Mirror    2  1  0  0  1  2  2  1  0
+    /// ```
+    ///
+    /// Whatever comes in, NaN too, what goes out is inside. Source: Direct3D 11.3 functional specification, 7.18.9.
+    pub(crate) fn apply<R: Real>(self, index: R, count: R) -> R {
+        let rest = |period: R| index - (index / period).floor() * period;
+        let last = count - R::of(1.0);
         let inside = match self {
             Self::Clamp => index,
-            Self::Repeat => index - (index / count).floor() * count,
+            Self::Repeat => rest(count),
+            Self::Mirror => {
+                // There and back again: the second half of the way runs backwards.
+                let way = rest(count + count);
+                way.min(count + last - way)
+            }
         };
-        inside.max(R::of(0.0)).min(count - R::of(1.0))
+        inside.max(R::of(0.0)).min(last)
     }
+    // ANCHOR_END: address_mode
 }
 
 /// A picture of `width` × `height` texels, row 0 at the bottom: v points up, as y does.
@@ -103,12 +121,56 @@ impl Texture {
     /// The book's early programs read past the array at u = 1; the address mode decides here.
     #[must_use]
     pub fn nearest<R: Real>(&self, [u, v]: [R; 2], mode: AddressMode) -> [R; 3] {
-        let column = mode.apply((u * R::of(f64::from(self.width))).floor(), self.width);
-        let row = mode.apply((v * R::of(f64::from(self.height))).floor(), self.height);
-        R::look_up(column, row, |column, row| self.texels[row * self.width as usize + column].to_f64())
+        let [width, height] = self.size();
+        let column = mode.apply((u * width).floor(), width);
+        let row = mode.apply((v * height).floor(), height);
+        R::look_up(column, row, |column, row| self.texel(column, row))
     }
     // ANCHOR_END: nearest
+
+    /// The mixture of the four texels around (u, v), as channels in 0..=255.
+    #[must_use]
+    pub fn bilinear<R: Real>(&self, uv: [R; 2], mode: AddressMode) -> [R; 3] {
+        bilinear(uv, self.size(), mode, |column, row| {
+            R::look_up(column, row, |column, row| self.texel(column, row))
+        })
+    }
+
+    fn size<R: Real>(&self) -> [R; 2] {
+        [self.width, self.height].map(|side| R::of(f64::from(side)))
+    }
+
+    /// The channels of a texel, in 0..=255.
+    pub(crate) fn texel(&self, column: usize, row: usize) -> [f64; 3] {
+        self.texels[row * self.width as usize + column].to_f64()
+    }
 }
+
+// ANCHOR: bilinear
+/// Mixes the four texels around (u, v) of a picture of `size` texels.
+///
+/// ```text
+///     ┌───────┬───────┐      Texel centres lie at halves: (u, v) is between the columns
+///     │   c───┼───d   │      ⌊u·width − ½⌋ and the next one, and the fraction is the weight
+///     ├───│───┼───│───┤      of the next one; rows likewise. Each of the four goes through
+///     │   a─p─┼───b   │      the address mode by itself.
+///     └───────┴───────┘
+/// ```
+///
+/// Source: Direct3D 11.3 functional specification, 7.18.8.
+pub(crate) fn bilinear<R: Real>(
+    [u, v]: [R; 2],
+    [width, height]: [R; 2],
+    mode: AddressMode,
+    texel: impl Fn(R, R) -> [R; 3],
+) -> [R; 3] {
+    let [x, y] = [u * width - R::of(0.5), v * height - R::of(0.5)];
+    let columns = [x.floor(), x.floor() + R::of(1.0)].map(|column| mode.apply(column, width));
+    let rows = [y.floor(), y.floor() + R::of(1.0)].map(|row| mode.apply(row, height));
+    let mixed = rows.map(|row| linear(texel(columns[0], row), texel(columns[1], row), x - x.floor()));
+    linear(mixed[0], mixed[1], y - y.floor())
+}
+// ANCHOR_END: bilinear
 
 #[cfg(test)]
 mod tests {
@@ -134,10 +196,35 @@ mod tests {
         assert_eq!(at(-0.1, AddressMode::Repeat), Color::BLUE);
         assert_eq!(at(7.5, AddressMode::Clamp), Color::BLUE);
         assert_eq!(at(7.5, AddressMode::Repeat), Color::GREEN);
-        for mode in [AddressMode::Clamp, AddressMode::Repeat] {
+        assert_eq!(at(-0.1, AddressMode::Mirror), Color::RED, "mirror of −1 is 0");
+        assert_eq!(at(1.1, AddressMode::Mirror), Color::BLUE);
+        assert_eq!(at(1.9, AddressMode::Mirror), Color::RED);
+        for mode in [AddressMode::Clamp, AddressMode::Repeat, AddressMode::Mirror] {
             for u in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300, -1e300] {
                 let _ = at(u, mode); // some texel, no panic
+                let _ = texture.bilinear([u, u], mode);
             }
         }
+    }
+
+    #[test]
+    fn mirrored_indices() {
+        let indices =
+            |mode: AddressMode| [-4.0, -3.0, -1.0, 0.0, 2.0, 3.0, 5.0, 6.0].map(|i| mode.apply(i, 3.0_f64));
+        assert_eq!(indices(AddressMode::Mirror), [2.0, 2.0, 0.0, 0.0, 2.0, 2.0, 0.0, 0.0]);
+        assert_eq!(indices(AddressMode::Repeat), [2.0, 0.0, 2.0, 0.0, 2.0, 0.0, 2.0, 0.0]);
+        assert_eq!(indices(AddressMode::Clamp), [0.0, 0.0, 0.0, 0.0, 2.0, 2.0, 2.0, 2.0]);
+    }
+
+    #[test]
+    fn between_texels() {
+        let texture = Texture::new(2, 2, [0, 100, 40, 140].map(Color::gray).to_vec());
+        let at = |u: f64, v, mode| texture.bilinear([u, v], mode)[0];
+        assert_eq!(at(0.25, 0.25, AddressMode::Clamp), 0.0, "a centre is the texel alone");
+        assert_eq!(at(0.5, 0.25, AddressMode::Clamp), 50.0);
+        assert_eq!(at(0.5, 0.5, AddressMode::Clamp), 70.0, "the mean of all four");
+        assert_eq!(at(0.0, 0.25, AddressMode::Clamp), 0.0);
+        assert_eq!(at(0.0, 0.25, AddressMode::Repeat), 50.0, "half of the texel from the other side");
+        assert_eq!(at(0.0, 0.25, AddressMode::Mirror), 0.0);
     }
 }

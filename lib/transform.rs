@@ -207,10 +207,7 @@ impl Viewport {
     /// Source: Direct3D 11.3 functional specification, 3.3 and 15.6.
     #[must_use]
     pub fn pixel_areas(&self, ndc: DVec3) -> DVec2 {
-        DVec2::new(
-            self.x + (ndc.x + 1.0) / 2.0 * self.width,
-            self.y + (ndc.y + 1.0) / 2.0 * self.height,
-        )
+        DVec2::new(self.x + (ndc.x + 1.0) / 2.0 * self.width, self.y + (ndc.y + 1.0) / 2.0 * self.height)
     }
     // ANCHOR_END: pixel_areas
 

@@ -136,11 +136,7 @@ impl<R: Real, const N: usize> TriangleVaryings<R, N> {
     ///
     /// From V = (V/ω) / (1/ω) by the quotient rule: ∂V = ω (∂(V/ω) − V ∂(1/ω)).
     #[must_use]
-    pub fn derivatives(
-        &self,
-        point: &Projected<R, N>,
-        [right, up]: WeightGradients<R>,
-    ) -> Derivatives<R, N> {
+    pub fn derivatives(&self, point: &Projected<R, N>, [right, up]: WeightGradients<R>) -> Derivatives<R, N> {
         let along = |direction: [R; 2]| {
             let distance = self.distance.change(direction);
             from_fn(|k| {

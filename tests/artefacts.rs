@@ -22,6 +22,7 @@ const TESTED: &[&str] = &[
     "divide-first",
     "tearing",
     "normals-wrong",
+    "gamma-space",
 ];
 
 #[test]
@@ -59,7 +60,7 @@ const GREEN: Color = Color::rgb(80, 180, 90);
 fn draw(chapter: &str, name: &str) -> Framebuffer {
     let variant = variant(chapter, name);
     let subject = variant.subject().expect("assets");
-    variant.draw(variant.size, 0, subject.as_ref())
+    variant.draw(&variant.sitting(subject.as_ref()))
 }
 
 fn count(picture: &Framebuffer, is_meant: impl Fn(i32, i32, Color) -> bool) -> usize {
@@ -97,6 +98,76 @@ fn nearly_level_edges_shoot_out_of_the_triangle() {
 fn seams_are_drawn_twice() {
     let twice = |picture: &Framebuffer| count(picture, |_, _, color| color == Color::rgb(255, 220, 60));
     assert!(twice(&draw("ch02_triangles", "shared-edge")) > 16 * 16 * 50);
+
+    // By the top-left rule every pixel is drawn once, and none between two triangles is left out.
+    let exact = draw("ch02_triangles", "top-left");
+    assert_eq!(twice(&exact), 0);
+    for y in exact.rect().rows() {
+        let row: Vec<bool> = exact.rect().columns().map(|x| is_hexagon(&exact, x, y)).collect();
+        // Enlarged pixels have lines between them; the hexagon is convex, so no row has a gap of 16 pixels.
+        let inner = row.iter().position(|&lit| lit).zip(row.iter().rposition(|&lit| lit));
+        assert!(
+            inner.is_none_or(|(first, last)| row[first..=last].windows(2).all(|pair| pair[0] || pair[1]))
+        );
+    }
+}
+
+fn is_hexagon(picture: &Framebuffer, x: i32, y: i32) -> bool {
+    picture.get(x, y) == Some(Color::rgb(60, 90, 130))
+}
+
+#[test]
+fn stored_numbers_are_not_amounts_of_light() {
+    let [wrong, right] = ["gamma-space", "linear-space"].map(|name| draw("ch10_matrices_lighting", name));
+    let at = |picture: &Framebuffer, x, y| picture.get(x, y).expect("inside").channels();
+    // The mean of black and white, and the middle between red and green.
+    assert_eq!((at(&wrong, 500, 200), at(&right, 500, 200)), ([128; 3], [188; 3]));
+    let [muddy, bright] = [&wrong, &right].map(|picture| at(picture, 320, 80)[0]);
+    assert!(muddy <= 128 && bright >= 187, "{muddy} {bright}");
+    // Half of the columns of the stripes are white.
+    assert_eq!(count(&right, |x, y, color| x >= 380 && y >= 300 && color == Color::WHITE), 110 * 140);
+}
+
+#[test]
+fn several_samples_make_shades() {
+    let shades = |name| {
+        let picture = draw("ch02_triangles", name);
+        let mut colors: Vec<[u8; 3]> =
+            picture.rows_from_top().flatten().map(|color| color.channels()).collect();
+        colors.sort_unstable();
+        colors.dedup();
+        colors.len()
+    };
+    assert_eq!(shades("one-sample"), 5, "black, blue, orange, light and dark");
+    let [four, sixteen, multi] = ["supersampled", "supersampled-16", "multisampled"].map(shades);
+    assert!(four > 20 && sixteen > 2 * four && multi > 20, "{four} {sixteen} {multi}");
+}
+
+#[test]
+fn three_filters_flicker_less_and_less() {
+    // How much neighbours differ far away, just below the horizon.
+    let unrest = |name| {
+        let picture = draw("ch10_matrices_lighting", name);
+        let red = |x: i32, y: i32| f64::from(picture.get(x, y).expect("inside").channels()[0]);
+        (280..300)
+            .flat_map(|y| (1..640).map(move |x| (x, y)))
+            .map(|(x, y)| (red(x, y) - red(x - 1, y)).abs())
+            .sum::<f64>()
+    };
+    let [nearest, bilinear, mipmapped] = ["nearest", "bilinear", "mipmapped"].map(unrest);
+    assert!(bilinear < 0.9 * nearest && mipmapped < 0.2 * nearest, "{nearest} {bilinear} {mipmapped}");
+}
+
+#[test]
+fn weights_corrected_by_w_give_the_same_square() {
+    let [weights, rows] = ["barycentric", "correct"].map(|name| draw("ch05_perspective_correct", name));
+    // Pixels are sampled half a pixel to the upper right, so borders differ by one pixel at most.
+    let differ = count(&weights, |x, y, color| {
+        let near = |dx: i32, dy: i32| rows.get(x + dx, y + dy) == Some(color);
+        !(near(0, 0) || near(1, 0) || near(0, 1) || near(1, 1) || near(-1, 0) || near(0, -1) || near(-1, -1))
+    });
+    assert!(differ <= 2, "{differ}");
+    assert!(bend(&weights) <= 2.5);
 }
 
 #[test]

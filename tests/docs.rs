@@ -125,7 +125,7 @@ fn pages_count_the_pixels_in_which_mistake_and_remedy_differ() {
             let Mistake::MendedBy(remedy) = variant.mistake else { continue };
             let picture = |variant: &Variant| {
                 let subject = variant.subject().expect("assets");
-                variant.draw(variant.size, 0, subject.as_ref())
+                variant.draw(&variant.sitting(subject.as_ref()))
             };
             let remedy = chapter.find(remedy).expect("a variant");
             let (_, count) = difference(&picture(variant), &picture(remedy)).expect("of one size");

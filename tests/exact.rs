@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 use std::f64::consts::TAU;
 
-use glam::{DVec2, DVec4, dvec2, dvec3, dvec4};
+use glam::{DVec2, DVec4, dvec2, dvec4};
 use proptest::prelude::*;
 use rasterbook::area::Winding;
 use rasterbook::clip::{
@@ -12,6 +12,7 @@ use rasterbook::clip::{
 use rasterbook::cull::CullMode;
 use rasterbook::depth::{DepthTest, Target};
 use rasterbook::edge::{Coverage, Exact, SUBPIXELS, Subpixel, snap};
+use rasterbook::interpolate::Interpolation;
 use rasterbook::merge::{Blend, Merge};
 use rasterbook::mesh::Mesh;
 use rasterbook::pipeline::{RenderState, draw};
@@ -19,6 +20,7 @@ use rasterbook::probe::{FragmentEvent, Probe, Silent};
 use rasterbook::raster::Rasterizer;
 use rasterbook::real::{Real, Scalar};
 use rasterbook::shader::{Shaded, Shader};
+use rasterbook::varyings::TriangleVaryings;
 use rasterbook::{Color, Rect};
 
 // ---- An oracle -----------------------------------------------------------------------------------------------------
@@ -132,6 +134,26 @@ proptest! {
     }
 
     #[test]
+    fn no_value_leaves_the_range_of_the_corners(
+        triangle in prop_oneof![prop::array::uniform3(corner()), sliver(), tiny()],
+        w in prop::array::uniform3(0.1..20.0), values in prop::array::uniform3(-5.0..5.0),
+    ) {
+        fn check<R: Scalar>(coverage: &Coverage, corners: &[NdcVertex<1>; 3], tolerance: f64) {
+            let values = corners.map(|corner| corner.varyings[0]);
+            let [low, high] = [values.iter().copied().fold(5.0, f64::min), values.iter().copied().fold(-5.0, f64::max)];
+            let varyings = TriangleVaryings::<R, 1>::new(corners, Interpolation::PerspectiveCorrect);
+            for (x, y, areas) in coverage.pixels(WINDOW) {
+                let value: f64 = varyings.at(coverage.weights(areas)).values[0].into();
+                assert!(value >= low - tolerance && value <= high + tolerance, "{value} at ({x}, {y}) is not in {low}..{high}");
+            }
+        }
+        let Some(coverage) = Coverage::new(triangle) else { return Ok(()) };
+        let corners = [0, 1, 2].map(|i| NdcVertex { position: triangle[i].extend(0.0), w: w[i], varyings: [values[i]] });
+        check::<f64>(&coverage, &corners, 1e-11);
+        check::<f32>(&coverage, &corners, 1e-3);
+    }
+
+    #[test]
     fn triangles_of_a_polygon_cover_it_once(
         radii in prop::collection::vec(4.0..20.0, 3..12), cuts in prop::collection::vec((any::<prop::sample::Index>(), 0.2..0.6, 0.2..0.4), 0..12),
         center in (20.0..28.0, 20.0..28.0), rotation in prop_oneof![0.0..TAU, Just(0.0), Just(TAU / 4.0), Just(TAU / 8.0)],
@@ -205,12 +227,7 @@ impl Probe for Counter {
 }
 
 /// A net of (n + 1)² points over the square −`reach`..`reach`, its inner points shifted by `jitter`, each with an ω.
-fn net(
-    n: usize,
-    reach: f64,
-    jitter: &[(f64, f64)],
-    w: impl Fn(f64, f64) -> f64,
-) -> Mesh<(DVec4, [f64; 3])> {
+fn net(n: usize, reach: f64, jitter: &[(f64, f64)], w: impl Fn(f64, f64) -> f64) -> Mesh<(DVec4, [f64; 3])> {
     let mut vertices = Vec::new();
     for row in 0..=n {
         for column in 0..=n {
@@ -307,6 +324,22 @@ fn picture(mesh: &Mesh<(DVec4, [f64; 3])>, rasterizer: &impl Rasterizer) -> Targ
     target.clear(state.clear_color, state.clear_depth);
     draw(mesh, &Flat, &state, rasterizer, &mut target, &Silent);
     target
+}
+
+#[test]
+fn an_orthographic_projection_needs_no_correction() {
+    // With the same ω everywhere, affine and perspective-correct interpolation draw the same picture.
+    let vertices = [(-0.9, -0.8, 10.0), (0.95, -0.3, 250.0), (-0.1, 0.9, 90.0)]
+        .map(|(x, y, red)| (dvec4(x, y, 0.1, 1.0), [red, 255.0 - red, 30.0]));
+    let mesh = Mesh::unindexed(vertices.to_vec()).expect("a triangle");
+    let drawn = |interpolation| {
+        let state = RenderState { interpolation, ..RenderState::default() };
+        let mut target = Target::new(40, 30);
+        target.clear(state.clear_color, state.clear_depth);
+        draw(&mesh, &Flat, &state, &Exact::<f64>::new(), &mut target, &Silent);
+        target.color
+    };
+    assert!(drawn(Interpolation::Affine) == drawn(Interpolation::PerspectiveCorrect));
 }
 
 #[test]

@@ -1,50 +1,144 @@
-//! How texels are picked.
+//! How texels are picked: filters, and what lies beyond the border.
 
-use glam::{DMat4, dvec3};
+use std::f64::consts::TAU;
+
+use glam::{DMat4, DVec3, dvec3};
 use rasterbook::Color;
 use rasterbook::clip::ClipVertex;
 use rasterbook::mesh::Mesh;
+use rasterbook::mipmap::MipMaps;
 use rasterbook::pipeline::RenderState;
 use rasterbook::program::{Canvas, assets};
 use rasterbook::real::Real;
 use rasterbook::shader::{Shaded, Shader};
 use rasterbook::texture::{AddressMode, Texture};
 use rasterbook::transform::{Frustum, look_at};
+use rasterbook::varyings::Derivatives;
+
+/// How a color is made of texels.
+#[derive(Clone, Copy)]
+enum Filter {
+    Nearest,
+    Bilinear,
+    /// Bilinear in the copy that fits best.
+    Mipmapped,
+    /// The same in two copies, mixed.
+    Trilinear,
+    /// A color for each copy.
+    Levels,
+}
 
 // ANCHOR: floor
-/// A floor on which a texture is repeated.
+/// A floor that is covered with a texture.
 struct Floor {
     clip_from_world: DMat4,
     texture: Texture,
+    maps: MipMaps,
+    filter: Filter,
+    mode: AddressMode,
 }
 
 impl Shader<2> for Floor {
-    /// x and z of the floor.
-    type Attributes = [f64; 2];
+    /// x and z of the floor, and the texture coordinates there.
+    type Attributes = ([f64; 2], [f64; 2]);
+    const USES_DERIVATIVES: bool = true;
 
-    fn vertex(&self, &[x, z]: &[f64; 2]) -> ClipVertex<2> {
-        ClipVertex {
-            position: self.clip_from_world * dvec3(x, 0.0, z).extend(1.0),
-            varyings: [x / 4.0, z / 4.0],
-        }
+    fn vertex(&self, &([x, z], uv): &Self::Attributes) -> ClipVertex<2> {
+        ClipVertex { position: self.clip_from_world * dvec3(x, 0.0, z).extend(1.0), varyings: uv }
     }
 
     fn fragment<R: Real>(&self, uv: [R; 2]) -> Shaded<R> {
-        Shaded::opaque(self.texture.nearest(uv, AddressMode::Repeat))
+        Shaded::opaque(self.texture.nearest(uv, self.mode))
     }
+
+    fn fragment_with_derivatives<R: Real>(&self, uv: [R; 2], change: Derivatives<R, 2>) -> Shaded<R> {
+        let level = self.maps.level_of_detail(change.dx, change.dy);
+        Shaded::opaque(match self.filter {
+            Filter::Nearest => self.texture.nearest(uv, self.mode),
+            Filter::Bilinear => self.texture.bilinear(uv, self.mode),
+            Filter::Mipmapped => self.maps.bilinear(uv, level, self.mode),
+            Filter::Trilinear => self.maps.trilinear(uv, level, self.mode),
+            Filter::Levels => {
+                let texel = self.maps.bilinear(uv, level, self.mode);
+                let tint = R::look_up(level + R::of(0.5), R::of(0.0), |level, _| tint(level));
+                [0, 1, 2].map(|k| texel[k] * R::of(0.5) + tint[k] * R::of(0.5))
+            }
+        })
+    }
+}
+// ANCHOR_END: floor
+
+/// The color of a level: round the color wheel from red.
+fn tint(level: usize) -> [f64; 3] {
+    [0.0, 1.0 / 3.0, 2.0 / 3.0].map(|turn| 127.5 + 127.5 * libm::cos(TAU * (level as f64 / 8.0 - turn)))
+}
+
+fn camera(eye: DVec3, target: DVec3) -> DMat4 {
+    let view_from_world = look_at(eye, target, DVec3::Y);
+    let camera = Frustum { left: -0.8, right: 0.8, bottom: -0.6, top: 0.6, near: 1.0, far: 500.0 };
+    camera.matrix() * view_from_world
+}
+
+fn sky() -> RenderState {
+    RenderState { clear_color: Color::rgb(150, 190, 230), ..RenderState::default() }
+}
+
+/// A part of the floor; `uv` gives the texture coordinates at its corners.
+fn floor(canvas: &mut Canvas, shader: &Floor, [left, right]: [f64; 2], uv: impl Fn(f64, f64) -> [f64; 2]) {
+    let corners = [[left, -10.0], [right, -10.0], [right, 400.0], [left, 400.0]];
+    let vertices = corners.map(|[x, z]| ([x, z], uv(x, z))).to_vec();
+    canvas.draw(&Mesh::indexed(vertices, vec![0, 1, 2, 0, 2, 3]).expect("two triangles"), shader, &sky());
+}
+
+fn shader(texture: &str, filter: Filter, mode: AddressMode) -> Floor {
+    let texture = assets::texture(texture).expect("an asset");
+    let clip_from_world = camera(dvec3(0.0, 2.0, -6.0), dvec3(0.6, 1.0, 0.0));
+    Floor { clip_from_world, maps: MipMaps::new(&texture), texture, filter, mode }
+}
+
+/// Bricks to the horizon.
+fn bricks(canvas: &mut Canvas, filter: Filter) {
+    canvas.clear(&sky());
+    let shader = shader("bricks.png", filter, AddressMode::Repeat);
+    floor(canvas, &shader, [-300.0, 300.0], |x, z| [x / 4.0, z / 4.0]);
 }
 
 /// The nearest texel.
 pub(super) fn nearest(canvas: &mut Canvas) {
-    let view_from_world = look_at(dvec3(0.0, 2.0, -6.0), dvec3(0.6, 1.0, 0.0), glam::DVec3::Y);
-    let camera = Frustum { left: -0.8, right: 0.8, bottom: -0.6, top: 0.6, near: 1.0, far: 500.0 };
-    let shader = Floor {
-        clip_from_world: camera.matrix() * view_from_world,
-        texture: assets::texture("bricks.png").expect("an asset"),
-    };
-    let corners = vec![[-300.0, -10.0], [300.0, -10.0], [300.0, 400.0], [-300.0, 400.0]];
-    let state = RenderState { clear_color: Color::rgb(150, 190, 230), ..RenderState::default() };
-    let mesh = Mesh::indexed(corners, vec![0, 1, 2, 0, 2, 3]).expect("two triangles");
-    canvas.render(&mesh, &shader, &state);
+    bricks(canvas, Filter::Nearest);
 }
-// ANCHOR_END: floor
+
+/// Four texels.
+pub(super) fn bilinear(canvas: &mut Canvas) {
+    bricks(canvas, Filter::Bilinear);
+}
+
+/// Four texels of one copy.
+pub(super) fn mipmapped(canvas: &mut Canvas) {
+    bricks(canvas, Filter::Mipmapped);
+}
+
+/// Four texels of two copies each.
+pub(super) fn trilinear(canvas: &mut Canvas) {
+    bricks(canvas, Filter::Trilinear);
+}
+
+/// Which copy is where.
+pub(super) fn mip_levels(canvas: &mut Canvas) {
+    bricks(canvas, Filter::Levels);
+}
+
+// ANCHOR: address_modes
+/// Three floors side by side, one for each address mode; the texture itself lies in the middle of each, a
+/// little in front of us.
+pub(super) fn address_modes(canvas: &mut Canvas) {
+    canvas.clear(&sky());
+    let modes = [AddressMode::Clamp, AddressMode::Repeat, AddressMode::Mirror];
+    for (i, mode) in (0..).zip(modes) {
+        let left = -6.2 + 4.2 * f64::from(i);
+        let clip_from_world = camera(dvec3(0.0, 4.5, -6.0), dvec3(0.0, 0.0, 2.6));
+        let shader = Floor { clip_from_world, ..shader("letters.png", Filter::Trilinear, mode) };
+        floor(canvas, &shader, [left, left + 3.8], |x, z| [(x - left - 1.1) / 1.8, (z + 0.6) / 1.8]);
+    }
+}
+// ANCHOR_END: address_modes

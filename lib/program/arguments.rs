@@ -3,8 +3,10 @@
 use std::ffi::OsString;
 use std::path::PathBuf;
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 
+use super::canvas::RasterizerChoice;
 use super::chapter::{Chapter, Mistake, Variant};
 use super::picture::Zoom;
 use crate::Framebuffer;
@@ -28,6 +30,7 @@ pub(super) struct Request {
     pub(super) texture: Option<PathBuf>,
     pub(super) as_is: bool,
     pub(super) flat: bool,
+    pub(super) rasterizer: Option<RasterizerChoice>,
 }
 
 /// What `--compare` compares with.
@@ -61,6 +64,7 @@ impl Request {
             texture: matches.get_one("texture").cloned(),
             as_is: matches.get_flag("as-is"),
             flat: matches.get_flag("flat"),
+            rasterizer: matches.get_one("rasterizer").copied(),
         })
     }
 }
@@ -82,6 +86,7 @@ fn command(chapter: &Chapter) -> Command {
         .args(what_to_draw(chapter))
         .args(how_to_draw(chapter))
         .args(subject(chapter))
+        .arg(rasterizer(chapter))
 }
 
 fn switch(id: &'static str, help: &'static str) -> Arg {
@@ -118,6 +123,18 @@ fn subject(chapter: &Chapter) -> [Arg; 4] {
         switch("flat", "Give the model the normals of its faces, so that every edge shows").requires("model"),
     ]
     .map(|argument| argument.hide(is_hidden))
+}
+
+/// Which rasterizer the pipeline ends with.
+fn rasterizer(chapter: &Chapter) -> Arg {
+    let names = RasterizerChoice::ALL.map(RasterizerChoice::name);
+    let parse = PossibleValuesParser::new(names).map(|name| {
+        let named = RasterizerChoice::ALL.into_iter().find(|choice| choice.name() == name);
+        named.unwrap_or_default()
+    });
+    option("rasterizer", "NAME", "Fill triangles by the book's scanlines, or exactly by edge functions")
+        .value_parser(parse)
+        .hide(chapter.variants.iter().all(|variant| variant.rasterizer.is_none()))
 }
 
 fn how_to_draw(chapter: &Chapter) -> [Arg; 6] {

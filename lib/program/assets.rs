@@ -6,6 +6,8 @@
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
 
+use glam::dvec3;
+
 use super::output::png_bytes;
 use super::picture::enlarged;
 use crate::files::{FileError, decode_texture};
@@ -21,13 +23,14 @@ macro_rules! asset {
 }
 
 /// The files that the programs carry.
-const FILES: [(&str, &[u8]); 7] = [
+const FILES: [(&str, &[u8]); 8] = [
     asset!("cube.obj"),
     asset!("sphere.obj"),
     asset!("pawn.obj"),
     asset!("letters.png"),
     asset!("numbers.png"),
     asset!("bricks.png"),
+    asset!("bricks-normals.png"),
     asset!("wood.png"),
 ];
 
@@ -63,6 +66,7 @@ pub fn generate() -> Vec<(&'static str, Vec<u8>)> {
         ("letters.png", picture(letters())),
         ("numbers.png", picture(numbers())),
         ("bricks.png", picture(bricks())),
+        ("bricks-normals.png", picture(bricks_normals())),
         ("wood.png", picture(wood())),
     ]
 }
@@ -297,6 +301,29 @@ fn bricks() -> Framebuffer {
                 [140.0 + tint + grain, 60.0 + tint / 2.0 + grain, 45.0 + grain]
             };
             picture.set(x, y, Color::truncated(color));
+        }
+    }
+    picture
+}
+
+/// The normal map that belongs to the bricks: bricks stand out of the mortar with rounded edges, and are rough.
+fn bricks_normals() -> Framebuffer {
+    let height = |x: i32, y: i32| {
+        let (x, y) = (x.rem_euclid(128), y.rem_euclid(128));
+        let along = (x + if y / 16 % 2 == 0 { 0 } else { 16 }) % 128;
+        // How far inside its brick a texel is; the mortar is 2 wide, at the lower and left border of a brick.
+        let inside =
+            [along % 32 - 2, 31 - along % 32, y % 16 - 2, 15 - y % 16].into_iter().min().unwrap_or(0);
+        let rounded = f64::from(inside.clamp(-1, 2) + 1);
+        rounded + 0.12 * noise(x / 2, y / 2) + 0.08 * noise(x, y + 500)
+    };
+    let mut picture = Framebuffer::new(128, 128);
+    for y in picture.rect().rows() {
+        for x in picture.rect().columns() {
+            // The normal leans against the slope.
+            let slope = [height(x + 1, y) - height(x - 1, y), height(x, y + 1) - height(x, y - 1)];
+            let normal = dvec3(-slope[0] / 2.0, -slope[1] / 2.0, 1.0).normalize();
+            picture.set(x, y, Color::truncated(((normal + 1.0) * 127.5 + 0.5).to_array()));
         }
     }
     picture

@@ -1,7 +1,8 @@
 //! What the figures of the later chapters draw on: a target, and the pipeline laid into the middle of it.
 
-use super::Failure;
+use super::{Failure, Sitting};
 use crate::depth::Target;
+use crate::edge::Exact;
 use crate::mesh::Mesh;
 use crate::model::{Model, Part};
 use crate::pipeline::{RenderState, draw};
@@ -12,6 +13,30 @@ use crate::texture::Texture;
 use crate::transform::Viewport;
 use crate::{Color, Framebuffer};
 
+/// Which rasterizer the pipeline ends with.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum RasterizerChoice {
+    /// The book's, [`Scanline`].
+    #[default]
+    Scanline,
+    /// The exact one in double precision, [`Exact`].
+    Edge,
+}
+
+impl RasterizerChoice {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Scanline, Self::Edge];
+
+    /// How it is called on the command line.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Scanline => "scanline",
+            Self::Edge => "edge",
+        }
+    }
+}
+
 /// A picture in the making.
 #[derive(Clone, Debug)]
 pub struct Canvas {
@@ -19,14 +44,21 @@ pub struct Canvas {
     pub target: Target,
     /// The number of the frame, 0 if the picture is no animation.
     pub frame: u32,
+    rasterizer: RasterizerChoice,
     aspect: f64,
 }
 
 impl Canvas {
     /// A canvas of some size for a scene that is made for a picture of the proportions of `native`.
-    pub(super) fn new((width, height): (u32, u32), native: (u32, u32), frame: u32) -> Self {
+    pub(super) fn new(sitting: &Sitting<'_>, native: (u32, u32)) -> Self {
         let aspect = f64::from(native.0) / f64::from(native.1);
-        Self { target: Target::new(width, height), frame, aspect }
+        let (width, height) = sitting.size;
+        Self {
+            target: Target::new(width, height),
+            frame: sitting.frame,
+            rasterizer: sitting.rasterizer,
+            aspect,
+        }
     }
 
     pub(super) fn into_picture(self) -> Framebuffer {
@@ -61,7 +93,12 @@ impl Canvas {
         state: &RenderState,
     ) {
         let viewport = Some(state.viewport.unwrap_or_else(|| self.viewport()));
-        draw(mesh, shader, &RenderState { viewport, ..*state }, &Scanline, &mut self.target, &Silent);
+        let state = RenderState { viewport, ..*state };
+        let target = &mut self.target;
+        match self.rasterizer {
+            RasterizerChoice::Scanline => draw(mesh, shader, &state, &Scanline, target, &Silent),
+            RasterizerChoice::Edge => draw(mesh, shader, &state, &Exact::<f64>::new(), target, &Silent),
+        }
     }
     // ANCHOR_END: draw
 

@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use super::{Canvas, Failure, Subject, run};
+use super::{Canvas, Failure, RasterizerChoice, Subject, run};
 use crate::Framebuffer;
 
 /// A chapter: the question it asks, and the pictures that answer it.
@@ -54,7 +54,22 @@ pub struct Variant {
     pub mistake: Mistake,
     /// How long and how fast it is, if it is an animation.
     pub animation: Option<Animation>,
+    /// The rasterizer, unless `--rasterizer` says otherwise; figures without a pipeline have none.
+    pub rasterizer: Option<RasterizerChoice>,
     figure: Figure,
+}
+
+/// How a variant is to be drawn.
+#[derive(Clone, Debug)]
+pub struct Sitting<'a> {
+    /// Width and height in pixels.
+    pub size: (u32, u32),
+    /// The frame of an animation; 0 for one picture.
+    pub frame: u32,
+    /// The rasterizer of the pipeline, where there is one.
+    pub rasterizer: RasterizerChoice,
+    /// What it is a picture of, where it draws a model.
+    pub subject: Option<&'a Subject>,
 }
 
 /// What draws a picture.
@@ -133,7 +148,22 @@ impl Variant {
     }
 
     const fn of(name: &'static str, figure: Figure, look: &'static str) -> Self {
-        Self { name, look, source: "", size: (640, 480), mistake: Mistake::No, animation: None, figure }
+        let rasterizer = match figure {
+            Figure::Plain(_) | Figure::PlainModel(..) => None,
+            Figure::Canvas(_) | Figure::Model(..) => Some(RasterizerChoice::Scanline),
+        };
+        let (source, mistake) = ("", Mistake::No);
+        Self { name, look, source, size: (640, 480), mistake, animation: None, rasterizer, figure }
+    }
+
+    /// The same, with the exact rasterizer.
+    ///
+    /// # Panics
+    /// If it does not use the pipeline.
+    #[must_use]
+    pub const fn exact(self) -> Self {
+        assert!(self.rasterizer.is_some(), "only the pipeline has a choice of rasterizers");
+        Self { rasterizer: Some(RasterizerChoice::Edge), ..self }
     }
 
     /// The same, as an animation: the canvas says which frame to draw, and each can be drawn by itself.
@@ -194,15 +224,20 @@ impl Variant {
         }
     }
 
-    /// Draws the picture, or a frame of the animation, of the given size in pixels and of the given subject; without a
-    /// subject, a variant that draws one stays black.
+    /// How it is drawn when nothing else is said: its own size and rasterizer, the first frame.
+    #[must_use]
+    pub fn sitting<'a>(&self, subject: Option<&'a Subject>) -> Sitting<'a> {
+        Sitting { size: self.size, frame: 0, rasterizer: self.rasterizer.unwrap_or_default(), subject }
+    }
+
+    /// Draws the picture; without a subject, a variant that draws one stays black.
     ///
     /// # Panics
     /// As [`Framebuffer::new`] does.
     #[must_use]
-    pub fn draw(&self, size: (u32, u32), frame: u32, subject: Option<&Subject>) -> Framebuffer {
-        let mut canvas = Canvas::new(size, self.size, frame);
-        match (self.figure, subject) {
+    pub fn draw(&self, sitting: &Sitting<'_>) -> Framebuffer {
+        let mut canvas = Canvas::new(sitting, self.size);
+        match (self.figure, sitting.subject) {
             (Figure::Plain(draw), _) => draw(&mut canvas.target.color),
             (Figure::PlainModel(draw, _), Some(subject)) => draw(&mut canvas.target.color, subject),
             (Figure::Canvas(draw), _) => draw(&mut canvas),

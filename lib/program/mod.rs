@@ -16,7 +16,8 @@
 //!     question: "How does a dot get onto the screen?",
 //!     variants: &[Variant::new("dot", dot, "one red pixel at (1, 1)").size(4, 4)],
 //! };
-//! assert_eq!(CHAPTER.lead().draw((4, 4), 0, None).get(1, 1), Some(Color::RED));
+//! let lead = CHAPTER.lead();
+//! assert_eq!(lead.draw(&lead.sitting(None)).get(1, 1), Some(Color::RED));
 //! // fn main() -> std::process::ExitCode { CHAPTER.main() }
 //! ```
 
@@ -30,6 +31,6 @@ mod output;
 pub mod picture;
 mod run;
 
-pub use canvas::{Canvas, Subject};
-pub use chapter::{Animation, Chapter, Mistake, Variant};
+pub use canvas::{Canvas, RasterizerChoice, Subject};
+pub use chapter::{Animation, Chapter, Mistake, Sitting, Variant};
 pub use failure::Failure;

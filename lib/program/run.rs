@@ -8,8 +8,8 @@ use glam::DVec3;
 use super::Failure;
 use super::animation::{encode, progress_bar};
 use super::arguments::{Comparison, Request, list};
-use super::canvas::Subject;
-use super::chapter::{Chapter, Mistake, Variant};
+use super::canvas::{RasterizerChoice, Subject};
+use super::chapter::{Chapter, Mistake, Sitting, Variant};
 use super::output::{Destination, note, say};
 use super::picture::{Zoom, difference, side_by_side, zoomed};
 use crate::files::{FileError, load_texture};
@@ -86,14 +86,15 @@ fn other<'a>(
     }
 }
 
-/// A variant as it was asked for: its size, and what it is a picture of.
-struct Sitting<'a> {
+/// A variant as it was asked for: its size, its rasterizer, and what it is a picture of.
+struct Commission<'a> {
     variant: &'a Variant,
     size: (u32, u32),
+    rasterizer: RasterizerChoice,
     subject: Option<Subject>,
 }
 
-impl<'a> Sitting<'a> {
+impl<'a> Commission<'a> {
     fn new(variant: &'a Variant, request: &Request, given: &Given) -> Result<Self, Failure> {
         let size = request.size.unwrap_or(variant.size);
         check_zoom(size, request.zoom)?;
@@ -102,11 +103,24 @@ impl<'a> Sitting<'a> {
             None => Subject { texture: given.texture.clone().or(own.texture), ..own },
             Some(model) => Subject { model: model.clone(), texture: given.texture.clone() },
         });
-        Ok(Self { variant, size, subject })
+        let rasterizer = rasterizer_of(variant, request)?;
+        Ok(Self { variant, size, rasterizer, subject })
     }
 
     fn draw(&self, frame: u32) -> Framebuffer {
-        self.variant.draw(self.size, frame, self.subject.as_ref())
+        let (size, rasterizer, subject) = (self.size, self.rasterizer, self.subject.as_ref());
+        self.variant.draw(&Sitting { size, frame, rasterizer, subject })
+    }
+}
+
+/// The rasterizer that was asked for, if the variant has a choice.
+fn rasterizer_of(variant: &Variant, request: &Request) -> Result<RasterizerChoice, Failure> {
+    match (variant.rasterizer, request.rasterizer) {
+        (None, Some(_)) => Err(Failure::Usage(format!(
+            "'{}' does not use the pipeline: --rasterizer means nothing to it",
+            variant.name
+        ))),
+        (own, asked) => Ok(asked.or(own).unwrap_or_default()),
     }
 }
 
@@ -209,14 +223,15 @@ fn check_zoom((width, height): (u32, u32), zoom: Option<Zoom>) -> Result<(), Fai
 /// The file name of a picture, without extension.
 fn name_of(variant: &Variant, request: &Request) -> String {
     let frame = request.frame.map_or_else(String::new, |frame| format!("@{frame:03}"));
+    let rasterizer = request.rasterizer.map_or_else(String::new, |choice| format!("-{}", choice.name()));
     let zoom = request.zoom.map_or_else(String::new, |zoom| format!("-zoom{}", zoom.factor));
-    format!("{}{frame}{zoom}", variant.name)
+    format!("{}{frame}{rasterizer}{zoom}", variant.name)
 }
 
 fn draw_one(variant: &Variant, request: &Request, destination: &Destination) -> Result<(), Failure> {
     let frame = frame_of(variant, request)?;
-    let sitting = Sitting::new(variant, request, &Given::load(request, &[variant])?)?;
-    let picture = enlarged(sitting.draw(frame), request.zoom);
+    let commission = Commission::new(variant, request, &Given::load(request, &[variant])?)?;
+    let picture = enlarged(commission.draw(frame), request.zoom);
     let path = destination.write(&name_of(variant, request), &picture)?;
     say(&path.display().to_string())
 }
@@ -225,8 +240,8 @@ fn animate(variant: &Variant, request: &Request, destination: &Destination) -> R
     let Some(animation) = variant.animation else {
         return Err(Failure::Usage(format!("'{}' is one picture: it cannot be animated", variant.name)));
     };
-    let sitting = Sitting::new(variant, request, &Given::load(request, &[variant])?)?;
-    let draw = |frame| enlarged(sitting.draw(frame), request.zoom);
+    let commission = Commission::new(variant, request, &Given::load(request, &[variant])?)?;
+    let draw = |frame| enlarged(commission.draw(frame), request.zoom);
     let path =
         destination.write_animation(&name_of(variant, request), |format| encode(format, animation, draw))?;
     say(&path.display().to_string())
@@ -240,8 +255,8 @@ fn draw_comparison(
 ) -> Result<(), Failure> {
     let frame = frame_of(this, request)?;
     let given = Given::load(request, &[this, that])?;
-    let first = Sitting::new(this, request, &given)?.draw(frame);
-    let second = Sitting::new(that, request, &given)?.draw(frame);
+    let first = Commission::new(this, request, &given)?.draw(frame);
+    let second = Commission::new(that, request, &given)?.draw(frame);
     let Some((marked, count)) = difference(&first, &second) else {
         let reason = format!("'{}' and '{}' differ in size: give --size", this.name, that.name);
         return Err(Failure::Usage(reason));

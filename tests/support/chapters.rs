@@ -17,7 +17,7 @@ macro_rules! chapters {
 chapters!(
     "../../chapters/ch01_pixels.rs" ch01_pixels,
     "../../chapters/ch02_dda_lines.rs" ch02_dda_lines,
-    "../../chapters/ch02_triangles.rs" ch02_triangles,
+    "../../chapters/ch02_triangles/main.rs" ch02_triangles,
     "../../chapters/ch03_barycentric.rs" ch03_barycentric,
     "../../chapters/ch04_projection.rs" ch04_projection,
     "../../chapters/ch05_perspective_correct.rs" ch05_perspective_correct,

@@ -1,54 +1,9 @@
-//! # Chapter 2, second part: triangles
-//!
-//! **Which pixels belong to a triangle?** Everything that follows is made of triangles. One is filled row by row:
-//! split it at its middle vertex, walk up the two sides of each half, and fill what lies between them.
-//!
-//! New here: signed area (`lib/area.rs`) and the scanline walk (`lib/scanline.rs`), which emits spans and knows no
-//! color. Book: section 2.2.
-
-use std::process::ExitCode;
+//! Triangles by rows: split at the middle vertex, walk up both sides, fill what lies between.
 
 use glam::{DVec2, DVec3, dvec2};
-use rasterbook::program::{Chapter, Subject, Variant, picture};
+use rasterbook::program::Subject;
 use rasterbook::scanline::{Corner, EdgeWalk, Half, Span, Walk, split};
 use rasterbook::{Color, Framebuffer, Rect};
-
-pub(crate) const CHAPTER: Chapter = Chapter {
-    name: "ch02_triangles",
-    question: "Which pixels belong to a triangle?",
-    variants: &[
-        Variant::new("flat", flat, "one triangle in one color").source("section 2.2"),
-        Variant::new(
-            "split",
-            split_in_two,
-            "the two halves, and the new point P′ on the long edge at the height of the middle vertex",
-        )
-        .source("section 2.2, Figure 2-3"),
-        Variant::new(
-            "overshoot",
-            overshoot,
-            "rows that shoot out of the tree wherever an edge is nearly level",
-        )
-        .source("section 2.2, Figure 2-4")
-        .size(320, 320)
-        .mended_by("clamped"),
-        Variant::new(
-            "clamped",
-            clamped,
-            "the same tree with x kept between the ends of its edge: nothing outside",
-        )
-        .source("section 2.2")
-        .size(320, 320),
-        Variant::new(
-            "shared-edge",
-            shared_edge,
-            "six triangles added up: yellow and red pixels are drawn twice or more, along every seam",
-        )
-        .unmended(),
-        Variant::of_model_in_plane("facets", facets, ["pawn.obj", "wood.png"], "a model of flat triangles, each as bright as it faces us; those that turn their back are left out")
-            .size(480, 480),
-    ],
-};
 
 // ANCHOR: fill
 /// Colors all pixels of a triangle.
@@ -59,7 +14,7 @@ fn fill(framebuffer: &mut Framebuffer, triangle: [DVec2; 3], walk: Walk, color: 
 }
 
 /// The halves of a triangle whose corners carry nothing but their position.
-fn halves(triangle: [DVec2; 3]) -> Option<[Half<()>; 2]> {
+pub(super) fn halves(triangle: [DVec2; 3]) -> Option<[Half<()>; 2]> {
     split(triangle.map(|position| Corner { position, attributes: () }), |(), (), _| ())
 }
 
@@ -79,19 +34,19 @@ fn fill_half(framebuffer: &mut Framebuffer, half: &Half<()>, walk: Walk, color: 
 // ANCHOR_END: fill
 
 /// Three points of the screen.
-fn triangle(corners: [(f64, f64); 3]) -> [DVec2; 3] {
+pub(super) fn triangle(corners: [(f64, f64); 3]) -> [DVec2; 3] {
     corners.map(DVec2::from)
 }
 
 /// The book's triangle.
-fn flat(framebuffer: &mut Framebuffer) {
+pub(super) fn flat(framebuffer: &mut Framebuffer) {
     let corners = triangle([(100.0, 0.0), (100.0, 300.0), (300.0, 0.0)]);
     fill(framebuffer, corners, Walk::default(), Color::RED);
 }
 
 // ANCHOR: split_in_two
 /// The halves in two colors; the corners and P′ marked.
-fn split_in_two(framebuffer: &mut Framebuffer) {
+pub(super) fn split_in_two(framebuffer: &mut Framebuffer) {
     let corners = triangle([(430.0, 40.0), (90.0, 190.0), (540.0, 440.0)]);
     for half in halves(corners).into_iter().flatten() {
         let is_lower = half.left.start.position == half.right.start.position;
@@ -113,12 +68,12 @@ fn mark(framebuffer: &mut Framebuffer, point: DVec2, color: Color) {
 }
 
 /// The tree with x free to leave its edges.
-fn overshoot(framebuffer: &mut Framebuffer) {
+pub(super) fn overshoot(framebuffer: &mut Framebuffer) {
     tree(framebuffer, Walk { edges: EdgeWalk::Unclamped, ..Walk::default() });
 }
 
 /// The tree with x kept between the ends of its edges.
-fn clamped(framebuffer: &mut Framebuffer) {
+pub(super) fn clamped(framebuffer: &mut Framebuffer) {
     tree(framebuffer, Walk::default());
 }
 
@@ -140,46 +95,9 @@ fn tree(framebuffer: &mut Framebuffer, walk: Walk) {
 }
 // ANCHOR_END: tree
 
-// ANCHOR: shared_edge
-/// How often each pixel is drawn when six triangles make up a hexagon.
-fn shared_edge(framebuffer: &mut Framebuffer) {
-    let center = (19.6, 14.7);
-    let rim = [(36.3, 15.2), (27.8, 27.4), (11.4, 26.9), (3.2, 14.1), (10.7, 2.3), (28.9, 1.6)];
-    let mut screen = Framebuffer::new(40, 30);
-    for i in 0..6 {
-        let corners = triangle([center, rim[i], rim[(i + 1) % 6]]);
-        for half in halves(corners).into_iter().flatten() {
-            half.walk(
-                |_| [(), ()],
-                Walk::default(),
-                screen.rect(),
-                |span| {
-                    for x in span.columns() {
-                        let before = screen.get(x, span.y).unwrap_or_default();
-                        screen.set(x, span.y, one_more(before));
-                    }
-                },
-            );
-        }
-    }
-    picture::paste(framebuffer, &picture::enlarged(&screen, 16), 0, 0);
-}
-
-/// The color of a pixel that has been drawn once more than `color` says.
-fn one_more(color: Color) -> Color {
-    const ONCE: Color = Color::rgb(60, 90, 130);
-    const TWICE: Color = Color::rgb(255, 220, 60);
-    match color {
-        Color::BLACK => ONCE,
-        ONCE => TWICE,
-        _ => Color::rgb(240, 50, 40),
-    }
-}
-// ANCHOR_END: shared_edge
-
 // ANCHOR: facets
 /// A model's triangles, seen along z, from far to near; each in one gray.
-fn facets(framebuffer: &mut Framebuffer, subject: &Subject) {
+pub(super) fn facets(framebuffer: &mut Framebuffer, subject: &Subject) {
     let mut triangles: Vec<[DVec3; 3]> = Vec::new();
     for part in &subject.model.parts {
         let vertices = part.mesh.vertices();
@@ -203,7 +121,3 @@ fn farness(triangle: &[DVec3; 3]) -> f64 {
     triangle.iter().map(|corner| corner.z).sum()
 }
 // ANCHOR_END: facets
-
-fn main() -> ExitCode {
-    CHAPTER.main()
-}

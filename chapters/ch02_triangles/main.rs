@@ -1,0 +1,69 @@
+//! # Chapter 2, second part: triangles
+//!
+//! **Which pixels belong to a triangle?** Everything that follows is made of triangles. One is filled row by row:
+//! split it at its middle vertex, walk up the two sides of each half, and fill what lies between them.
+//!
+//! New here: signed area (`lib/area.rs`) and the scanline walk (`lib/scanline.rs`), which emits spans and knows no
+//! color. Beyond the book: edge functions (`lib/edge.rs`), which ask for each pixel whether it is inside, and several
+//! samples in a pixel (`lib/antialias.rs`). The figures: `scanlines.rs`, `edges.rs`, `samples.rs`. Book: section 2.2.
+
+mod edges;
+mod samples;
+mod scanlines;
+
+use std::process::ExitCode;
+
+use rasterbook::program::{Chapter, Variant};
+
+pub(crate) const CHAPTER: Chapter = Chapter {
+    name: "ch02_triangles",
+    question: "Which pixels belong to a triangle?",
+    variants: &[
+        Variant::new("flat", scanlines::flat, "one triangle in one color").source("section 2.2"),
+        Variant::new(
+            "split",
+            scanlines::split_in_two,
+            "the two halves, and the new point P′ on the long edge at the height of the middle vertex",
+        )
+        .source("section 2.2, Figure 2-3"),
+        Variant::new(
+            "overshoot",
+            scanlines::overshoot,
+            "rows that shoot out of the tree wherever an edge is nearly level",
+        )
+        .source("section 2.2, Figure 2-4")
+        .size(320, 320)
+        .mended_by("clamped"),
+        Variant::new(
+            "clamped",
+            scanlines::clamped,
+            "the same tree with x kept between the ends of its edge: nothing outside",
+        )
+        .source("section 2.2")
+        .size(320, 320),
+        Variant::new(
+            "shared-edge",
+            edges::shared_edge,
+            "six triangles added up: yellow and red pixels are drawn twice or more, along every seam",
+        )
+        .mended_by("top-left"),
+        Variant::new("top-left", edges::top_left, "the same six triangles by edge functions and the top-left rule: each pixel is drawn once, and there is no hole"),
+        Variant::new("bounding-box", edges::bounding_box, "the box around a triangle: outside, the tint says which edge has the pixel on its wrong side; where none has is the triangle")
+            .source("second, third and fourth note"),
+        Variant::new("one-sample", samples::one_sample, "one sample in the middle of each pixel: stairs along the edges, a broken line where triangles pierce each other, and a false pattern where stripes are narrower than pixels")
+        .size(560, 420),
+        Variant::new("supersampled", samples::supersampled, "2×2 samples a pixel, each with its own color and depth, averaged: three shades along every edge, and in the stripes")
+        .size(560, 420)
+            .source("fourth note"),
+        Variant::new("supersampled-16", samples::supersampled_16, "4×4 samples a pixel: smoother still, and the narrow stripes turn gray")
+        .size(560, 420),
+        Variant::new("multisampled", samples::multisampled, "four samples a pixel for coverage and depth, one color for all of them: smooth edges, but the false pattern of the stripes is back")
+        .size(560, 420),
+        Variant::of_model_in_plane("facets", scanlines::facets, ["pawn.obj", "wood.png"], "a model of flat triangles, each as bright as it faces us; those that turn their back are left out")
+            .size(480, 480),
+    ],
+};
+
+fn main() -> ExitCode {
+    CHAPTER.main()
+}

@@ -1,0 +1,133 @@
+//! What the numbers of a color mean: light reckoned with stored numbers, and with amounts of light.
+
+use glam::{DVec2, DVec4, dvec4};
+use rasterbook::Color;
+use rasterbook::clip::ClipVertex;
+use rasterbook::light::{lambert, normalize};
+use rasterbook::mesh::Mesh;
+use rasterbook::pipeline::RenderState;
+use rasterbook::program::Canvas;
+use rasterbook::real::Real;
+use rasterbook::shader::{Shaded, Shader};
+use rasterbook::srgb::{decode, encode};
+
+// ANCHOR: space
+/// In which numbers light is added and multiplied.
+#[derive(Clone, Copy)]
+enum Space {
+    /// The stored ones, a mistake: twice the number is more than four times the light.
+    Gamma,
+    /// Amounts of light.
+    Linear,
+}
+
+impl Space {
+    /// A stored color, 0..=255 → what is reckoned with, 0..=1.
+    fn enter<R: Real>(self, stored: [R; 3]) -> [R; 3] {
+        match self {
+            Self::Gamma => stored.map(|channel| channel / R::of(255.0)),
+            Self::Linear => decode(stored),
+        }
+    }
+
+    /// And back.
+    fn leave<R: Real>(self, reckoned: [R; 3]) -> [R; 3] {
+        match self {
+            Self::Gamma => reckoned.map(|channel| channel * R::of(255.0)),
+            Self::Linear => encode(reckoned),
+        }
+    }
+}
+// ANCHOR_END: space
+
+/// What is shown in a rectangle of the picture.
+#[derive(Clone, Copy)]
+enum Sample {
+    /// A white ball, lit from the right.
+    Ball,
+    /// Red on the left, green on the right, and their mixtures.
+    Mixture,
+    /// Upright lines, one pixel wide, black and white.
+    Stripes,
+    /// The mean of black and white.
+    Mean,
+}
+
+struct Rectangle {
+    space: Space,
+    sample: Sample,
+}
+
+// ANCHOR: samples
+impl Shader<3> for Rectangle {
+    /// The place in NDC; −1..1 across the rectangle, and the column of the picture in pixels.
+    type Attributes = (DVec4, DVec2, f64);
+
+    fn vertex(&self, &(position, across, column): &Self::Attributes) -> ClipVertex<3> {
+        ClipVertex { position, varyings: [across.x, across.y, column] }
+    }
+
+    fn fragment<R: Real>(&self, [x, y, column]: [R; 3]) -> Shaded<R> {
+        let (zero, one) = (R::of(0.0), R::of(1.0));
+        let [black, white] = [Color::BLACK, Color::WHITE].map(|color| color.to_f64().map(R::of));
+        let [red, green] = [Color::RED, Color::GREEN].map(|color| color.to_f64().map(R::of));
+        let light = |stored| self.space.enter(stored);
+        let mix = |a: [R; 3], b: [R; 3], t: R| [0, 1, 2].map(|k| a[k] * (one - t) + b[k] * t);
+        match self.sample {
+            Sample::Ball => {
+                let square = one - x * x - y * y;
+                let normal = [x, y, -square.max(zero).sqrt()];
+                let to_light = normalize([R::of(0.8), R::of(0.35), R::of(-0.5)]);
+                let bright = lambert(normal, to_light);
+                Shaded::opaque(self.space.leave(light(white).map(|channel| channel * bright)))
+                    .discard(square.is_less(zero))
+            }
+            Sample::Mixture => {
+                Shaded::opaque(self.space.leave(mix(light(red), light(green), (x + one) * R::of(0.5))))
+            }
+            Sample::Mean => Shaded::opaque(self.space.leave(mix(light(black), light(white), R::of(0.5)))),
+            Sample::Stripes => {
+                let half = column * R::of(0.5);
+                let is_even = (half - half.floor()).is_less(R::of(0.5));
+                Shaded::opaque([0, 1, 2].map(|k| R::select(is_even, black[k], white[k])))
+            }
+        }
+    }
+}
+// ANCHOR_END: samples
+
+/// The samples in their places: left, bottom, right and top, in pixels of a picture of 640×480.
+const PLACES: [(Sample, [f64; 4]); 4] = [
+    (Sample::Ball, [40.0, 160.0, 320.0, 440.0]),
+    (Sample::Stripes, [380.0, 300.0, 600.0, 440.0]),
+    (Sample::Mean, [380.0, 160.0, 600.0, 300.0]),
+    (Sample::Mixture, [40.0, 40.0, 600.0, 120.0]),
+];
+
+fn draw(canvas: &mut Canvas, space: Space) {
+    let state = RenderState { clear_color: Color::gray(60), ..RenderState::default() };
+    canvas.clear(&state);
+    for (sample, [left, bottom, right, top]) in PLACES {
+        let corners = [
+            (left, bottom, -1.0, -1.0),
+            (right, bottom, 1.0, -1.0),
+            (right, top, 1.0, 1.0),
+            (left, top, -1.0, 1.0),
+        ];
+        let vertices = corners.map(|(column, row, x, y)| {
+            (dvec4(column / 320.0 - 1.0, row / 240.0 - 1.0, 0.0, 1.0), DVec2::new(x, y), column)
+        });
+        let mesh = Mesh::indexed(vertices.to_vec(), vec![0, 1, 2, 0, 2, 3]).expect("two triangles");
+        canvas.draw(&mesh, &Rectangle { space, sample }, &state);
+    }
+}
+
+/// With stored numbers.
+pub(super) fn gamma_space(canvas: &mut Canvas) {
+    draw(canvas, Space::Gamma);
+}
+
+/// With amounts of light.
+pub(super) fn linear_space(canvas: &mut Canvas) {
+    draw(canvas, Space::Linear);
+}

@@ -1,0 +1,193 @@
+//! Chapter 10, beyond the book: smaller and smaller copies of a texture, so that a pixel always covers about one texel.
+//!
+//! Takes texture coordinates and how they change from pixel to pixel, and gives a filtered color. Where a pixel covers
+//! many texels, one of them, or four, says little about their mean; the *mip maps* hold that mean, reckoned beforehand.
+//!
+//! ```
+//! use rasterbook::Color;
+//! use rasterbook::mipmap::MipMaps;
+//! use rasterbook::texture::{AddressMode, Texture};
+//!
+//! let maps = MipMaps::new(&Texture::checkerboard(Color::BLACK, Color::WHITE));
+//! assert_eq!(maps.count(), 2); // 2×2 and 1×1
+//! assert_eq!(maps.trilinear([0.3, 0.3], 1.0, AddressMode::Repeat), [128.0; 3]); // the mean
+//! ```
+
+use std::array::from_fn;
+use std::sync::Arc;
+
+use crate::Color;
+use crate::framebuffer::Rounding;
+use crate::interpolate::linear;
+use crate::real::Real;
+use crate::texture::{AddressMode, Texture, bilinear};
+
+/// A texture and its copies, each half as wide and high as the one before, down to one texel.
+///
+/// ```text
+///   ┌───────────────┐ ┌───────┐ ┌───┐ ┌─┐
+///   │               │ │   1   │ │ 2 │ └─┘ 3
+///   │       0       │ │       │ └───┘
+///   │               │ └───────┘
+///   └───────────────┘
+/// ```
+///
+/// Source: L. Williams, Pyramidal parametrics, 1983.
+#[derive(Clone, Debug)]
+pub struct MipMaps {
+    levels: Arc<[Texture]>,
+    /// All rows of all levels, one after the other: the level, and the row in it.
+    rows: Arc<[(u32, u32)]>,
+}
+
+impl MipMaps {
+    // ANCHOR: mip_maps
+    /// Makes the copies: each texel is the mean of four of the level before (of two where that is one texel wide or
+    /// high; an odd last column or row is left out).
+    #[must_use]
+    pub fn new(texture: &Texture) -> Self {
+        let mut levels = vec![texture.clone()];
+        while let Some(last) = levels.last().filter(|level| level.width().max(level.height()) > 1) {
+            levels.push(halved(last));
+        }
+        let rows = (0_u32..)
+            .zip(&levels)
+            .flat_map(|(level, texture)| (0..texture.height()).map(move |row| (level, row)));
+        Self { rows: rows.collect(), levels: levels.into() }
+    }
+    // ANCHOR_END: mip_maps
+
+    /// The number of levels.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.levels.len()
+    }
+
+    // ANCHOR: level_of_detail
+    /// Which level fits: λ = log₂ ρ, where ρ is the longer one of the two ways in texels that (u, v) goes from a pixel to
+    /// its right and to its upper neighbour. Limited to the levels that there are.
+    ///
+    /// ```text
+    ///    a pixel, seen on the texture:
+    ///                                  ρ = max( |∂(u·width, v·height)/∂x|, |∂(u·width, v·height)/∂y| )
+    ///        ╱╲   ∂/∂y
+    ///       ╱  ╲                       λ = 0: a texel a pixel, or larger texels
+    ///      ╲  ╱                        λ = 1: two texels a pixel: level 1
+    ///       ╲╱   ∂/∂x
+    /// ```
+    ///
+    /// Source: Direct3D 11.3 functional specification, 7.18.11.
+    #[must_use]
+    pub fn level_of_detail<R: Real>(&self, uv_dx: [R; 2], uv_dy: [R; 2]) -> R {
+        let size = [self.levels[0].width(), self.levels[0].height()];
+        let length = |way: [R; 2]| {
+            let [x, y]: [R; 2] = from_fn(|i| way[i] * R::of(f64::from(size[i])));
+            (x * x + y * y).sqrt()
+        };
+        let texels = length(uv_dx).max(length(uv_dy));
+        let last = R::of((self.count() - 1) as f64);
+        texels.map(libm::log2).max(R::of(0.0)).min(last)
+    }
+    // ANCHOR_END: level_of_detail
+
+    /// Bilinear in the level nearest to `level`, as channels in 0..=255: levels meet in lines.
+    #[must_use]
+    pub fn bilinear<R: Real>(&self, uv: [R; 2], level: R, mode: AddressMode) -> [R; 3] {
+        let level = (level + R::of(0.5)).floor();
+        let size: [R; 2] = R::look_up(level, R::of(0.0), |level, _| self.size_and_start(level).0);
+        let [start]: [R; 1] = R::look_up(level, R::of(0.0), |level, _| [self.size_and_start(level).1]);
+        bilinear(uv, size, mode, |column, row| {
+            R::look_up(column, start + row, |column, row| self.texel(column, row))
+        })
+    }
+
+    /// Bilinear in the two levels around `level`, and linear between them: no line shows.
+    #[must_use]
+    pub fn trilinear<R: Real>(&self, uv: [R; 2], level: R, mode: AddressMode) -> [R; 3] {
+        let [low, high] = [level.floor(), (level.floor() + R::of(1.0)).min(R::of((self.count() - 1) as f64))];
+        linear(self.bilinear(uv, low, mode), self.bilinear(uv, high, mode), level - low)
+    }
+
+    /// The size of a level, and how many rows the levels before it have.
+    fn size_and_start(&self, level: usize) -> ([f64; 2], f64) {
+        let [width, height] = [self.levels[level].width(), self.levels[level].height()].map(f64::from);
+        let before: u32 = self.levels[..level].iter().map(Texture::height).sum();
+        ([width, height], f64::from(before))
+    }
+
+    /// The channels of a texel, its row counted through all levels.
+    fn texel(&self, column: usize, row: usize) -> [f64; 3] {
+        let (level, row) = self.rows[row];
+        self.levels[level as usize].texel(column, row as usize)
+    }
+}
+
+/// The next smaller copy.
+fn halved(texture: &Texture) -> Texture {
+    let [width, height] = [texture.width(), texture.height()].map(|side| (side / 2).max(1));
+    // The neighbour of a single column or row is itself.
+    let pair = |i: u32, count: u32| [2 * i, 2 * i + 1].map(|i| i.min(count - 1) as usize);
+    let mean = |x: u32, y: u32| {
+        let [columns, rows] = [pair(x, texture.width()), pair(y, texture.height())];
+        let four =
+            [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j): (usize, usize)| texture.texel(columns[i], rows[j]));
+        let sum: [f64; 3] = from_fn(|k| four.iter().map(|texel| texel[k]).sum());
+        Rounding::Nearest.color(sum.map(|sum| sum / 4.0))
+    };
+    let texels: Vec<Color> =
+        (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| mean(x, y)).collect();
+    Texture::new(width, height, texels)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ramp(width: u32, height: u32) -> Texture {
+        let texels = (0..width * height).map(|i| Color::gray((i * 4) as u8)).collect();
+        Texture::new(width, height, texels)
+    }
+
+    #[test]
+    fn down_to_one_texel() {
+        let sizes = |width, height| {
+            let maps = MipMaps::new(&ramp(width, height));
+            maps.levels.iter().map(|level| (level.width(), level.height())).collect::<Vec<_>>()
+        };
+        assert_eq!(sizes(8, 4), [(8, 4), (4, 2), (2, 1), (1, 1)]);
+        assert_eq!(sizes(5, 3), [(5, 3), (2, 1), (1, 1)]);
+        assert_eq!(sizes(1, 1), [(1, 1)]);
+    }
+
+    #[test]
+    fn a_level_is_the_mean_of_the_one_before() {
+        let maps = MipMaps::new(&ramp(4, 2));
+        // 0 4 8 12 and 16 20 24 28: the mean of 0, 4, 16 and 20 is 10.
+        assert_eq!(maps.levels[1], Texture::new(2, 1, vec![Color::gray(10), Color::gray(18)]));
+        assert_eq!(maps.levels[2], Texture::new(1, 1, vec![Color::gray(14)]));
+    }
+
+    #[test]
+    fn which_level_fits() {
+        let maps = MipMaps::new(&ramp(8, 8));
+        let level = |x: f64, y: f64| maps.level_of_detail([x / 8.0, 0.0], [0.0, y / 8.0]);
+        assert_eq!(level(1.0, 1.0), 0.0);
+        assert_eq!(level(0.01, 0.01), 0.0, "magnified");
+        assert_eq!(level(2.0, 1.0), 1.0, "the longer way decides");
+        assert_eq!(level(1.0, 4.0), 2.0);
+        assert_eq!(level(1000.0, 0.0), 3.0, "the last level");
+        assert_eq!(level(f64::NAN, f64::NAN), 0.0);
+    }
+
+    #[test]
+    fn between_levels() {
+        let maps = MipMaps::new(&ramp(4, 4));
+        let at = |level: f64| maps.trilinear([0.5, 0.5], level, AddressMode::Clamp)[0];
+        let [first, second] = [at(0.0), at(1.0)];
+        assert_eq!(at(0.25), first + (second - first) * 0.25);
+        assert_eq!(maps.bilinear([0.5, 0.5], 0.6, AddressMode::Clamp)[0], second);
+        for level in [f64::NAN, -5.0, 99.0] {
+            let _ = maps.trilinear([0.5_f64, 0.5], level.clamp(0.0, 2.0), AddressMode::Repeat);
+        }
+    }
+}
