@@ -52,14 +52,14 @@ const DIGIT: [&str; 10] = [
 // ANCHOR: digit
 /// The digit 3 on a screen of 8×10 pixels, each shown as a block of 40×40.
 fn digit(framebuffer: &mut Framebuffer) {
-    let mut screen = Framebuffer::new(8, 10);
-    for (y, row) in (0..).zip(DIGIT.iter().rev()) {
-        for (x, lamp) in (0..).zip(row.chars()) {
-            let color = if lamp == '#' { Color::WHITE } else { Color::BLACK };
-            screen.set(x, y, color);
+    picture::draw_enlarged(framebuffer, (8, 10), 40, |screen| {
+        for (y, row) in (0..).zip(DIGIT.iter().rev()) {
+            for (x, lamp) in (0..).zip(row.chars()) {
+                let color = if lamp == '#' { Color::WHITE } else { Color::BLACK };
+                screen.set(x, y, color);
+            }
         }
-    }
-    picture::paste(framebuffer, &picture::enlarged(&screen, 40), 0, 0);
+    });
 }
 // ANCHOR_END: digit
 

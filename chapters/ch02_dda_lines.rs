@@ -47,7 +47,7 @@ fn line(framebuffer: &mut Framebuffer) {
 
 /// Colors the pixels that the DDA emits.
 fn draw_line(framebuffer: &mut Framebuffer, a: DVec2, b: DVec2, axis: StepAxis, color: Color) {
-    dda(a, b, axis, framebuffer.rect(), |x, y| framebuffer.set(x, y, color));
+    dda(a, b, axis, framebuffer.window(), |x, y| framebuffer.set(x, y, color));
 }
 // ANCHOR_END: line
 

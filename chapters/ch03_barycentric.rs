@@ -44,7 +44,7 @@ fn corner<const N: usize>(x: f64, y: f64, values: [f64; N]) -> Corner<[f64; N]> 
 /// One value a corner, drawn as gray.
 fn gray(framebuffer: &mut Framebuffer) {
     let corners = [corner(100.0, 0.0, [0.0]), corner(0.0, 100.0, [255.0]), corner(100.0, 200.0, [0.0])];
-    step_values(corners, Walk::default(), framebuffer.rect(), |x, y, [value]| {
+    step_values(corners, Walk::default(), framebuffer.window(), |x, y, [value]| {
         framebuffer.set(x, y, Color::truncated([value; 3]));
     });
 }
@@ -58,7 +58,7 @@ fn rgb(framebuffer: &mut Framebuffer) {
         corner(240.0, 240.0, [0.0, 255.0, 0.0]),
         corner(0.0, 480.0, [0.0, 0.0, 255.0]),
     ];
-    step_values(corners, Walk::default(), framebuffer.rect(), |x, y, values| {
+    step_values(corners, Walk::default(), framebuffer.window(), |x, y, values| {
         framebuffer.set(x, y, Color::truncated(values));
     });
 }
@@ -70,7 +70,7 @@ fn texture(framebuffer: &mut Framebuffer) {
     let texture = Texture::book();
     let corners =
         [corner(0.0, 0.0, [0.0, 0.0]), corner(480.0, 0.0, [1.0, 0.0]), corner(0.0, 480.0, [0.0, 1.0])];
-    step_values(corners, Walk::default(), framebuffer.rect(), |x, y, uv| {
+    step_values(corners, Walk::default(), framebuffer.window(), |x, y, uv| {
         framebuffer.set(x, y, Color::truncated(texture.nearest(uv, AddressMode::Clamp)));
     });
 }
@@ -82,6 +82,7 @@ fn weights(framebuffer: &mut Framebuffer) {
     // The value of an edge function is twice the area of the small triangle over that edge.
     let coverage =
         Coverage::new([dvec2(70.0, 50.0), dvec2(590.0, 130.0), dvec2(250.0, 440.0)]).expect("area");
+    framebuffer.tell(|probe| probe.coverage(&coverage));
     for y in framebuffer.rect().rows() {
         for x in framebuffer.rect().columns() {
             let areas = coverage.edge_values(center(x, y));
@@ -122,20 +123,23 @@ fn limited(framebuffer: &mut Framebuffer) {
 /// Small triangles on a screen of 80×60 pixels, each at another fraction of a pixel. All corners have values in 0..=1,
 /// drawn as dark to bright blue; a value outside that range is drawn in orange.
 fn confetti(framebuffer: &mut Framebuffer, limit: StepLimit) {
-    let mut screen = Framebuffer::new(80, 60);
-    let window = screen.rect();
-    for (column, row) in (0..6).flat_map(|row| (0..7).map(move |column| (column, row))) {
-        let (i, j) = (f64::from(column), f64::from(row));
-        let (x, y) = (2.2 + 11.13 * i, 2.6 + 9.41 * j + 0.27 * i);
-        let corners =
-            [corner(x, y, [0.0]), corner(x + 8.4, y + 1.7, [0.0]), corner(x + 1.8 + 0.7 * i, y + 7.6, [1.0])];
-        step_values(corners, Walk { limit, ..Walk::default() }, window, |x, y, [value]| {
-            let is_in_range = (-1e-9..=1.0 + 1e-9).contains(&value);
-            let blue = Color::truncated([30.0 + 60.0 * value, 60.0 + 120.0 * value, 110.0 + 140.0 * value]);
-            screen.set(x, y, if is_in_range { blue } else { Color::rgb(255, 140, 0) });
-        });
-    }
-    picture::paste(framebuffer, &picture::enlarged(&screen, 8), 0, 0);
+    picture::draw_enlarged(framebuffer, (80, 60), 8, |screen| {
+        for (column, row) in (0..6).flat_map(|row| (0..7).map(move |column| (column, row))) {
+            let (i, j) = (f64::from(column), f64::from(row));
+            let (x, y) = (2.2 + 11.13 * i, 2.6 + 9.41 * j + 0.27 * i);
+            let corners = [
+                corner(x, y, [0.0]),
+                corner(x + 8.4, y + 1.7, [0.0]),
+                corner(x + 1.8 + 0.7 * i, y + 7.6, [1.0]),
+            ];
+            step_values(corners, Walk { limit, ..Walk::default() }, screen.window(), |x, y, [value]| {
+                let is_in_range = (-1e-9..=1.0 + 1e-9).contains(&value);
+                let blue =
+                    Color::truncated([30.0 + 60.0 * value, 60.0 + 120.0 * value, 110.0 + 140.0 * value]);
+                screen.set(x, y, if is_in_range { blue } else { Color::rgb(255, 140, 0) });
+            });
+        }
+    });
 }
 // ANCHOR_END: spikes
 

@@ -42,7 +42,7 @@ fn segment(
     color: Color,
 ) {
     let (a, b) = (to_screen(project(a)), to_screen(project(b)));
-    dda(a, b, StepAxis::Longer, framebuffer.rect(), |x, y| framebuffer.set(x, y, color));
+    dda(a, b, StepAxis::Longer, framebuffer.window(), |x, y| framebuffer.set(x, y, color));
 }
 // ANCHOR_END: to_screen
 

@@ -70,7 +70,7 @@ fn square_to(x: f64, z: f64) -> [Triangle; 2] {
 fn textured(framebuffer: &mut Framebuffer, triangles: &[Triangle], interpolation: Interpolation) {
     let texture = Texture::book();
     for &triangle in triangles {
-        step_parameter(triangle, interpolation, Walk::default(), framebuffer.rect(), |x, y, point| {
+        step_parameter(triangle, interpolation, Walk::default(), framebuffer.window(), |x, y, point| {
             framebuffer.set(x, y, Color::truncated(texture.nearest(point.values, AddressMode::Clamp)));
         });
     }
@@ -98,7 +98,7 @@ fn barycentric(framebuffer: &mut Framebuffer) {
     let texture = Texture::book();
     for triangle in square_to(TILTED_X, TILTED_Z) {
         let coverage = Coverage::new(triangle.map(|corner| corner.position)).expect("area");
-        for (x, y, areas) in coverage.pixels(framebuffer.rect()) {
+        for (x, y, areas) in coverage.pixels(framebuffer.window()) {
             let on_screen = areas.map(|area| area as f64 / coverage.twice_area as f64);
             let in_space = perspective_weights(on_screen, triangle.map(|corner| corner.attributes.w));
             let uv = [0, 1].map(|k| (0..3).map(|i| in_space[i] * triangle[i].attributes.values[k]).sum());
@@ -115,7 +115,7 @@ fn textured_as_before(framebuffer: &mut Framebuffer, triangles: &[Triangle]) {
     for triangle in triangles {
         let corners =
             triangle.map(|corner| Corner { position: corner.position, attributes: corner.attributes.values });
-        step_values(corners, Walk::default(), framebuffer.rect(), |x, y, uv| {
+        step_values(corners, Walk::default(), framebuffer.window(), |x, y, uv| {
             framebuffer.set(x, y, Color::truncated(texture.nearest(uv, AddressMode::Clamp)));
         });
     }
@@ -149,7 +149,7 @@ fn checkered_floor(framebuffer: &mut Framebuffer, interpolation: Interpolation) 
 
     let texture = Texture::checkerboard(Color::rgb(50, 60, 80), Color::rgb(235, 235, 225));
     for triangle in [[near[0], near[1], far[0]], [near[1], far[1], far[0]]] {
-        step_parameter(triangle, interpolation, Walk::default(), framebuffer.rect(), |x, y, point| {
+        step_parameter(triangle, interpolation, Walk::default(), framebuffer.window(), |x, y, point| {
             framebuffer.set(x, y, Color::truncated(texture.nearest(point.values, AddressMode::Repeat)));
         });
     }

@@ -66,7 +66,7 @@ fn draw<const N: usize>(
 ) {
     let Target { color, depth } = target;
     let (interpolation, walk) = (Interpolation::PerspectiveCorrect, Walk::default());
-    step_parameter(triangle, interpolation, walk, color.rect(), |x, y, point| {
+    step_parameter(triangle, interpolation, walk, color.window(), |x, y, point| {
         if depth.test_and_set(x, y, point.values[N - 1], test) {
             color.set(x, y, color_of(point.values));
         }
@@ -84,7 +84,7 @@ fn z_buffer(framebuffer: &mut Framebuffer) {
     let tilted = quad(TILTED, 100.0, [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]);
     let facing = quad([480.0, 150.0], 150.0, [[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0]]);
 
-    let mut target = Target::new(framebuffer.width(), framebuffer.height());
+    let mut target = Target::like(framebuffer);
     target.clear(Color::BLACK, FAR_AWAY);
     let texture = Texture::book();
     for triangle in tilted.into_iter().chain(facing) {
@@ -117,7 +117,7 @@ const BLUE: Color = Color::rgb(70, 120, 220);
 // ANCHOR: painter
 /// Three squares, the farthest first: each covers what is behind it.
 fn painter(framebuffer: &mut Framebuffer) {
-    let mut target = Target::new(framebuffer.width(), framebuffer.height());
+    let mut target = Target::like(framebuffer);
     for (place, color) in
         [([-60.0, -20.0, 800.0], RED), ([-130.0, -110.0, 600.0], GREEN), ([-20.0, -140.0, 450.0], BLUE)]
     {
@@ -145,7 +145,7 @@ fn piercing(framebuffer: &mut Framebuffer, red_first: bool, test: DepthTest) {
         order.reverse();
     }
 
-    let mut target = Target::new(framebuffer.width(), framebuffer.height());
+    let mut target = Target::like(framebuffer);
     target.clear(Color::BLACK, FAR_AWAY);
     for (triangle, color) in order {
         draw(&mut target, triangle, test, |_| color);
@@ -172,7 +172,7 @@ fn intersecting(framebuffer: &mut Framebuffer) {
 // ANCHOR: depth
 /// A floor with posts, from the distance 1 to 12; each pixel's gray is what `encode` makes of its distance, 0..=1.
 fn encoded_depths(framebuffer: &mut Framebuffer, encode: impl Fn(f64) -> f64) {
-    let mut target = Target::new(framebuffer.width(), framebuffer.height());
+    let mut target = Target::like(framebuffer);
     target.clear(Color::BLACK, FAR_AWAY);
     let floor = |x: f64, z: f64| seen_from_middle(x, -0.5, z);
     let [a, b, c, d] = [floor(-12.0, 1.0), floor(12.0, 1.0), floor(12.0, 12.0), floor(-12.0, 12.0)];
@@ -205,7 +205,7 @@ fn w_buffer(framebuffer: &mut Framebuffer) {
 // ANCHOR: uncleared
 /// Two frames of a square that moves to the right and away from us.
 fn two_frames(framebuffer: &mut Framebuffer, clear_depth: bool) {
-    let mut target = Target::new(framebuffer.width(), framebuffer.height());
+    let mut target = Target::like(framebuffer);
     target.clear(Color::BLACK, FAR_AWAY);
     for (place, color) in [([-170.0, -110.0, 450.0], RED), ([-90.0, -60.0, 500.0], GREEN)] {
         target.color.clear(Color::BLACK);

@@ -16,6 +16,7 @@ use rasterbook::clip::{
 use rasterbook::depth::{DepthEncoding, Target};
 use rasterbook::interpolate::Projected;
 use rasterbook::line::{StepAxis, dda};
+use rasterbook::probe::Assembled;
 use rasterbook::program::{Chapter, Variant};
 use rasterbook::scanline::Corner;
 use rasterbook::texture::{AddressMode, Texture};
@@ -52,6 +53,7 @@ fn draw(
     texel: impl Fn([f64; 2]) -> Color,
 ) {
     let planes = volume.planes(Default::default());
+    target.color.tell(|probe| probe.assembled(&Assembled::new(&triangle, &planes, ClipTest::BeforeDivide)));
     for piece in fan(clip_triangle(triangle, &planes, ClipTest::BeforeDivide)) {
         let corners = piece.map(|vertex| {
             let divided = NdcVertex::from(vertex);
@@ -77,7 +79,7 @@ fn vertex([x, y, z]: [f64; 3], near: f64, uv: [f64; 2]) -> ClipVertex<2> {
 /// The book's scene: a wall that runs away from us, and one at the distance 55 that faces us.
 fn walls(framebuffer: &mut Framebuffer, volume: ClipVolume) {
     let corner = |x: f64, y: f64, z: f64| vertex([x, y, z], 9.0, [x / 1280.0, y / 480.0]);
-    let mut target = Target::new(framebuffer.width(), framebuffer.height());
+    let mut target = Target::like(framebuffer);
     target.clear(Color::BLACK, FAR_AWAY);
     let texture = Texture::book();
     for triangle in [
@@ -112,7 +114,7 @@ fn floor(framebuffer: &mut Framebuffer, volume: ClipVolume) {
     let texture = Texture::checkerboard(Color::rgb(60, 80, 110), Color::rgb(230, 225, 200));
     let texel = |uv| Color::truncated(texture.nearest(uv, AddressMode::Repeat));
 
-    let mut target = Target::new(framebuffer.width(), framebuffer.height());
+    let mut target = Target::like(framebuffer);
     target.clear(Color::rgb(20, 24, 32), FAR_AWAY);
     for triangle in [[a, b, c], [a, c, d]] {
         let to_screen = |divided: NdcVertex<2>| dvec2(320.0, 240.0) + divided.position.truncate();
@@ -151,7 +153,7 @@ fn polygon(framebuffer: &mut Framebuffer) {
 
     let line = |framebuffer: &mut Framebuffer, a: DVec4, b: DVec4, color| {
         let [a, b] = [a, b].map(|p| dvec2(p.x, p.y));
-        dda(a, b, StepAxis::Longer, framebuffer.rect(), |x, y| framebuffer.set(x, y, color));
+        dda(a, b, StepAxis::Longer, framebuffer.window(), |x, y| framebuffer.set(x, y, color));
     };
     let right = dvec4(330.0, 0.0, 0.0, 0.0);
     for shift in [DVec4::ZERO, right] {

@@ -13,6 +13,7 @@ use rasterbook::clip::{ClipTest, ClipVertex, ClipVolume, DepthRange, NdcVertex, 
 use rasterbook::depth::Target;
 use rasterbook::interpolate::Projected;
 use rasterbook::line::{StepAxis, dda};
+use rasterbook::probe::Assembled;
 use rasterbook::program::{Chapter, Variant};
 use rasterbook::scanline::Corner;
 use rasterbook::texture::{AddressMode, Texture};
@@ -47,6 +48,7 @@ const ASPECT: f64 = 4.0 / 3.0;
 fn draw(target: &mut Target, triangle: [ClipVertex<2>; 3], planes: &[Plane], test: ClipTest) {
     let texture = Texture::book();
     let viewport = Viewport::fitting(target.color.rect(), ASPECT);
+    target.color.tell(|probe| probe.assembled(&Assembled::new(&triangle, planes, test)));
     for piece in fan(clip_triangle(triangle, planes, test)) {
         let corners = piece.map(|vertex| {
             let NdcVertex { position, w, varyings } = vertex.into();
@@ -68,7 +70,7 @@ fn draw_all(
     range: DepthRange,
     test: ClipTest,
 ) {
-    let mut target = Target::new(framebuffer.width(), framebuffer.height());
+    let mut target = Target::like(framebuffer);
     target.clear(Color::BLACK, 1.0);
     for corners in triangles {
         let vertices = corners.map(|(view, uv)| ClipVertex { position: project(view.into()), varyings: uv });
@@ -155,7 +157,7 @@ fn clip_first(framebuffer: &mut Framebuffer) {
 // ANCHOR_END: divide_first
 
 fn draw_line(framebuffer: &mut Framebuffer, a: DVec2, b: DVec2, color: Color) {
-    dda(a, b, StepAxis::Longer, framebuffer.rect(), |x, y| framebuffer.set(x, y, color));
+    dda(a, b, StepAxis::Longer, framebuffer.window(), |x, y| framebuffer.set(x, y, color));
 }
 
 /// A square of pixels around a point.

@@ -16,6 +16,7 @@ use std::array::from_fn;
 
 use crate::edge::{SUBPIXELS, Subpixel};
 use crate::framebuffer::Rounding;
+use crate::probe::Listener;
 use crate::{Color, Framebuffer, Rect};
 
 /// Where the samples of a pixel are: in 1/256 pixel from its lower left corner.
@@ -40,7 +41,7 @@ pub const GRID_4X4: [Subpixel; 16] = grid::<16>(4);
 /// ```
 pub const ROTATED_4: [Subpixel; 4] = [[96, 224], [224, 160], [32, 96], [160, 32]];
 
-/// The centres of n × n equal squares.
+/// The centers of n × n equal squares.
 const fn grid<const COUNT: usize>(n: i64) -> [Subpixel; COUNT] {
     let step = SUBPIXELS / n;
     let mut samples = [[0; 2]; COUNT];
@@ -60,6 +61,7 @@ pub struct Samples<'a> {
     rect: Rect,
     colors: Vec<Color>,
     depths: Vec<f64>,
+    listener: Option<Listener>,
 }
 
 impl<'a> Samples<'a> {
@@ -72,7 +74,14 @@ impl<'a> Samples<'a> {
             rect: Rect::sized(width, height),
             colors: vec![Color::BLACK; count],
             depths: vec![f64::INFINITY; count],
+            listener: None,
         }
+    }
+
+    /// The same, with somebody who listens.
+    #[must_use]
+    pub fn heard_by(self, listener: Option<Listener>) -> Self {
+        Self { listener, ..self }
     }
 
     /// The pixels.
@@ -92,7 +101,14 @@ impl<'a> Samples<'a> {
     pub fn draw(&mut self, x: i32, y: i32, sample: usize, depth: f64, color: Color) {
         let Some(pixel) = self.rect.index(x, y) else { return };
         let index = pixel * self.pattern.len() + sample;
-        if depth <= self.depths[index] {
+        let stored = self.depths[index];
+        if let Some(listener) = &self.listener {
+            let passes = if depth <= stored { "drawn" } else { "hidden" };
+            listener.note(x, y, &|| {
+                format!("sample {sample}: depth {depth:.4} against {stored:.4}, {color:?} is {passes}")
+            });
+        }
+        if depth <= stored {
             self.depths[index] = depth;
             self.colors[index] = color;
         }

@@ -19,6 +19,8 @@ use std::array::from_fn;
 use arrayvec::ArrayVec;
 use glam::{DVec3, DVec4, dvec4};
 
+use crate::probe::Vertex;
+
 /// A vertex in clip space, with the values that it carries.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClipVertex<const N: usize> {
@@ -254,6 +256,18 @@ impl<const N: usize> From<ClipVertex<N>> for NdcVertex<N> {
     }
 }
 
+impl<'a, const N: usize> From<&'a ClipVertex<N>> for Vertex<'a> {
+    fn from(vertex: &'a ClipVertex<N>) -> Self {
+        Self { position: vertex.position, varyings: &vertex.varyings }
+    }
+}
+
+impl<'a, const N: usize> From<&'a NdcVertex<N>> for Vertex<'a> {
+    fn from(vertex: &'a NdcVertex<N>) -> Self {
+        Self { position: vertex.position.extend(vertex.w), varyings: &vertex.varyings }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -343,15 +357,15 @@ mod tests {
 
         #[test]
         fn a_shared_edge_is_cut_in_the_same_point(t in triangle(), other in position()) {
-            // The same edge in the other direction, as in the neighbouring triangle.
-            let neighbour = [t[1], t[0], ClipVertex { position: other, varyings: other.to_array() }];
+            // The same edge in the other direction, as in the neighboring triangle.
+            let neighbor = [t[1], t[0], ClipVertex { position: other, varyings: other.to_array() }];
             for plane in &Plane::CANONICAL {
                 let cut = |t: &[ClipVertex<4>; 3]| {
                     let [a, b] = [t[0], t[1]];
                     let line: ArrayVec<_, 4> = clip_polygon(&[a, b], plane, ClipTest::BeforeDivide);
                     line.into_iter().filter(|vertex| *vertex != a && *vertex != b).collect::<Vec<_>>()
                 };
-                let (mine, theirs) = (cut(&t), cut(&neighbour));
+                let (mine, theirs) = (cut(&t), cut(&neighbor));
                 prop_assert!(mine.iter().all(|vertex| theirs.contains(vertex)), "{mine:?} {theirs:?}");
             }
         }

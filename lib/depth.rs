@@ -14,6 +14,7 @@
 //! ```
 
 use crate::interpolate::{Interpolation, Projected, step_parameter_and_depth};
+use crate::probe::Listener;
 use crate::scanline::{Corner, Walk};
 use crate::{Color, Framebuffer, Rect};
 
@@ -109,17 +110,26 @@ pub fn w_from_z(z: f64, near: f64, far: f64) -> f64 {
 }
 
 /// A depth for each pixel.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct DepthBuffer {
     rect: Rect,
     values: Vec<f64>,
+    listener: Option<Listener>,
+}
+
+/// Two buffers are equal if they hold the same depths, whoever listens.
+impl PartialEq for DepthBuffer {
+    fn eq(&self, other: &Self) -> bool {
+        self.rect == other.rect && self.values == other.values
+    }
 }
 
 impl DepthBuffer {
     /// A buffer of `width` × `height` depths, all of them 0.
     #[must_use]
     pub fn new(width: u32, height: u32) -> Self {
-        Self { rect: Rect::sized(width, height), values: vec![0.0; width as usize * height as usize] }
+        let values = vec![0.0; width as usize * height as usize];
+        Self { rect: Rect::sized(width, height), values, listener: None }
     }
 
     /// Gives all pixels the same depth.
@@ -138,6 +148,9 @@ impl DepthBuffer {
     pub fn test_and_set(&mut self, x: i32, y: i32, depth: f64, test: DepthTest) -> bool {
         let Some(index) = self.rect.index(x, y) else { return false };
         let passes = test.passes(depth, self.values[index]);
+        if let Some(listener) = &self.listener {
+            listener.tested(x, y, depth, self.values[index], passes);
+        }
         if passes {
             self.values[index] = depth;
         }
@@ -165,6 +178,15 @@ impl Target {
         Self { color: Framebuffer::new(width, height), depth: DepthBuffer::new(width, height) }
     }
 
+    /// A target for the picture of a framebuffer: of its size, black, and with the same listener.
+    #[must_use]
+    pub fn like(framebuffer: &Framebuffer) -> Self {
+        let mut target = Self::new(framebuffer.width(), framebuffer.height());
+        target.color.listen(framebuffer.listener());
+        target.depth.listener = framebuffer.listener();
+        target
+    }
+
     /// Gives all pixels a color and a depth: what the last frame has left must not stay. Book, section 9.4.1.
     pub fn clear(&mut self, color: Color, depth: f64) {
         self.color.clear(color);
@@ -181,7 +203,7 @@ impl Target {
     ) {
         let Self { color, depth } = self;
         let (interpolation, walk) = (Interpolation::PerspectiveCorrect, Walk::default());
-        step_parameter_and_depth(corners, interpolation, walk, color.rect(), |x, y, point, z| {
+        step_parameter_and_depth(corners, interpolation, walk, color.window(), |x, y, point, z| {
             if depth.test_and_set(x, y, z, DepthTest::LessOrEqual) {
                 color.set(x, y, color_of(point.values));
             }

@@ -1,4 +1,4 @@
-//! Beyond the book: the exact rasterizer. Which pixels a triangle covers is decided with whole numbers, and neighbours
+//! Beyond the book: the exact rasterizer. Which pixels a triangle covers is decided with whole numbers, and neighbors
 //! that share an edge cover every pixel along it exactly once.
 //!
 //! Takes triangles in NDC, as the scanline rasterizer does, and stands behind the same door. A pixel is a square with
@@ -7,22 +7,25 @@
 //! # Contract
 //!
 //! **Which pixels.** The viewport maps NDC −1..1 to 0..width and 0..height, y up; the pixel (i, j) is sampled at its
-//! centre (i + ½, j + ½). After clipping and the viewport, and before culling, x and y of each vertex are rounded to the
+//! center (i + ½, j + ½). After clipping and the viewport, and before culling, x and y of each vertex are rounded to the
 //! nearest multiple of 1/256, halves away from zero. All decisions are made on these whole numbers, in 64-bit integers,
 //! which cannot overflow. The facing of a triangle is the sign of its area there; one without area is not drawn. A
 //! sample inside is covered; one on an edge is covered if the edge is a *top* edge (level, the triangle below it) or a
 //! *left* edge (not level, the triangle on its right), as seen on the screen; one on two edges, if both are.
 //!
-//! **Which values.** Weights are E / (sum of the three E), E the exact values of the edge functions at the centre, each
-//! converted with one rounding. 1/ω, V/ω and the depth are interpolated by these weights, and V = (V/ω) · 1/(1/ω). The
+//! **Which values.** Weights are E · (1 / sum of the three E), E the exact values of the edge functions at the center,
+//! converted, divided and multiplied with one rounding each. 1/ω, V/ω and the depth are interpolated by these weights, and V = (V/ω) · 1/(1/ω). The
 //! depth is linear on the screen. All arithmetic is that of the number type: four operations, one rounding each.
 //!
 //! **Which rounding.** Channels are rounded to the nearest of 0..=255, halves upwards; NaN gives 0.
 //!
+//! Triangles that share an edge, with the same two vertices, leave no hole along it and draw nothing twice. Where a
+//! vertex of one lies in the middle of an edge of another (a T-junction), rounding may move it off that edge.
+//!
 //! Vertices outside twice the width and height of the view, and behind the eye, are clipped away before they are
 //! rounded (a *guard band*); a triangle that is still farther than 2¹⁶ pixels from the origin is not drawn.
 //!
-//! Sources: Direct3D 11.3 functional specification, 3.2.3.6 (colors), 3.3 (pixel centres), 3.4.1 (snapping), 3.4.2.1
+//! Sources: Direct3D 11.3 functional specification, 3.2.3.6 (colors), 3.3 (pixel centers), 3.4.1 (snapping), 3.4.2.1
 //! (top-left rule), 15.11.1 (facing); Vulkan specification, *Basic polygon rasterization* (values by weights); OpenGL
 //! 4.6, 14.6.1, asks only that one of two triangles sharing an edge covers a sample, which follows.
 //!
@@ -31,7 +34,7 @@
 //! use rasterbook::Rect;
 //! use rasterbook::edge::Coverage;
 //!
-//! // Two triangles that share a diagonal through pixel centres: each centre belongs to one of them.
+//! // Two triangles that share a diagonal through pixel centers: each center belongs to one of them.
 //! let [a, b, c, d] = [dvec2(0.0, 0.0), dvec2(4.0, 0.0), dvec2(4.0, 4.0), dvec2(0.0, 4.0)];
 //! let lower = Coverage::new([a, b, c]).ok_or("no area")?;
 //! let upper = Coverage::new([a, c, d]).ok_or("no area")?;
@@ -53,7 +56,7 @@ use crate::depth::Target;
 use crate::framebuffer::Rounding;
 use crate::merge::merge;
 use crate::pipeline::RenderState;
-use crate::probe::{FragmentEvent, Probe};
+use crate::probe::{FragmentEvent, Probe, Vertex, Window};
 use crate::raster::Rasterizer;
 use crate::real::Scalar;
 use crate::shader::{Shaded, Shader};
@@ -70,7 +73,7 @@ const FARTHEST: f64 = 65_536.0;
 /// A place on the screen in 1/256 pixel, y up.
 pub type Subpixel = [i64; 2];
 
-/// The centre of the pixel (x, y).
+/// The center of the pixel (x, y).
 #[must_use]
 pub fn center(x: i32, y: i32) -> Subpixel {
     [x, y].map(|i| i64::from(i) * SUBPIXELS + SUBPIXELS / 2)
@@ -207,11 +210,11 @@ impl Coverage {
         weight_gradients(self.vertices.map(|[x, y]| dvec2(x as f64, y as f64) / SUBPIXELS as f64))
     }
 
-    /// The pixels of the window whose centres lie in the bounding box of the triangle.
+    /// The pixels of the window whose centers lie in the bounding box of the triangle.
     #[must_use]
     pub fn bounding_box(&self, window: Rect) -> Rect {
         let [xs, ys] = [0, 1].map(|axis| self.vertices.map(|vertex| vertex[axis]));
-        // The first centre that is not below the lowest, and the one after the last that is not above the highest.
+        // The first center that is not below the lowest, and the one after the last that is not above the highest.
         let first = |values: [i64; 3]| {
             let lowest = values[0].min(values[1]).min(values[2]);
             (lowest - SUBPIXELS / 2 + SUBPIXELS - 1).div_euclid(SUBPIXELS) as i32
@@ -228,13 +231,15 @@ impl Coverage {
         }
     }
 
-    /// The pixels of the window whose centres are covered, row by row from the bottom, with the values of the edge
+    /// The pixels of the window whose centers are covered, row by row from the bottom, with the values of the edge
     /// functions there.
-    pub fn pixels(&self, window: Rect) -> impl Iterator<Item = (i32, i32, [i64; 3])> + use<> {
-        let coverage = *self;
-        let area = self.bounding_box(window);
+    pub fn pixels<W: Into<Window>>(&self, window: W) -> impl Iterator<Item = (i32, i32, [i64; 3])> + use<W> {
+        let window = window.into();
+        let area = self.bounding_box(window.rect);
+        let announced = Announced::new(window, self);
         let steps = self.edges.map(|edge| edge.step_x * SUBPIXELS);
         area.rows().flat_map(move |y| {
+            let coverage = announced.coverage;
             let mut values = coverage.edge_values(center(area.left, y));
             area.columns().filter_map(move |x| {
                 let here = values;
@@ -247,6 +252,25 @@ impl Coverage {
     }
 }
 // ANCHOR_END: coverage
+
+/// Tells a window's listener of a triangle, and that it is done as soon as this goes out of scope.
+struct Announced {
+    window: Window,
+    coverage: Coverage,
+}
+
+impl Announced {
+    fn new(window: Window, coverage: &Coverage) -> Self {
+        window.tell(|probe| probe.coverage(coverage));
+        Self { window, coverage: *coverage }
+    }
+}
+
+impl Drop for Announced {
+    fn drop(&mut self) {
+        self.window.tell(|probe| probe.done());
+    }
+}
 
 /// The exact rasterizer, computing in `R`: `f64` or `f32`. Coverage is the same in both.
 ///
@@ -263,7 +287,7 @@ impl<R: Scalar> Exact<R> {
 }
 
 impl<R: Scalar> Rasterizer for Exact<R> {
-    fn draw<S: Shader<N>, P: Probe, const N: usize>(
+    fn draw<S: Shader<N>, P: Probe + ?Sized, const N: usize>(
         &self,
         triangles: impl Iterator<Item = [NdcVertex<N>; 3]>,
         state: &RenderState,
@@ -309,7 +333,7 @@ fn cut_to_guard_band<const N: usize>(triangle: [NdcVertex<N>; 3]) -> ArrayVec<Nd
 // ANCHOR_END: guard_band
 
 // ANCHOR: draw_triangle
-fn draw_triangle<R: Scalar, S: Shader<N>, P: Probe, const N: usize>(
+fn draw_triangle<R: Scalar, S: Shader<N>, P: Probe + ?Sized, const N: usize>(
     triangle: &[NdcVertex<N>; 3],
     state: &RenderState,
     shader: &S,
@@ -317,13 +341,13 @@ fn draw_triangle<R: Scalar, S: Shader<N>, P: Probe, const N: usize>(
     probe: &P,
 ) {
     // Viewport: NDC → screen, and to 1/256 pixel.
-    let window = target.color.rect();
-    let viewport = state.viewport_in(window);
+    let window = target.color.window();
+    let viewport = state.viewport_in(window.rect);
     let coverage = Coverage::new(triangle.map(|vertex| viewport.pixel_areas(vertex.position)));
 
     // Culling, by the signed area on the screen.
     let signed_area = coverage.as_ref().map_or(0.0, Coverage::signed_area);
-    probe.piece(triangle, signed_area);
+    probe.piece(triangle.each_ref().map(Vertex::from), signed_area);
     let Some(coverage) = coverage.filter(|_| !state.cull.culls(signed_area, state.front_face)) else {
         probe.culled();
         return;

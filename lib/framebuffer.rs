@@ -14,6 +14,7 @@
 use std::fmt;
 use std::ops::Range;
 
+use crate::probe::{Listener, Probe, Window};
 use crate::real::Scalar;
 
 /// A color of three channels with 8 bits each, as a screen shows it. Book, section 1.2.
@@ -159,12 +160,22 @@ impl Rect {
 ///        └──────► x     so (x, y) stands at y · width + x
 ///          0 1 2
 /// ```
-#[derive(Clone, PartialEq, Eq)]
+#[derive(Clone)]
 pub struct Framebuffer {
     width: u32,
     height: u32,
     pixels: Vec<Color>,
+    listener: Option<Listener>,
 }
+
+/// Two framebuffers are equal if they show the same picture, whoever listens.
+impl PartialEq for Framebuffer {
+    fn eq(&self, other: &Self) -> bool {
+        self.rect() == other.rect() && self.pixels == other.pixels
+    }
+}
+
+impl Eq for Framebuffer {}
 
 impl Framebuffer {
     /// The largest width and the largest height of a framebuffer, in pixels.
@@ -182,7 +193,7 @@ impl Framebuffer {
             "no framebuffer has {width}×{height} pixels"
         );
         let pixels = vec![Color::BLACK; width as usize * height as usize];
-        Self { width, height, pixels }
+        Self { width, height, pixels, listener: None }
     }
 
     /// The number of columns.
@@ -197,7 +208,7 @@ impl Framebuffer {
         self.height
     }
 
-    /// All pixels, as the rectangle that the drawing stages take as their window.
+    /// All pixels.
     #[must_use]
     pub const fn rect(&self) -> Rect {
         Rect::sized(self.width, self.height)
@@ -208,6 +219,9 @@ impl Framebuffer {
     pub fn set(&mut self, x: i32, y: i32, color: Color) {
         if let Some(index) = self.rect().index(x, y) {
             self.pixels[index] = color;
+            if let Some(listener) = &self.listener {
+                listener.written(x, y, color);
+            }
         }
     }
     // ANCHOR_END: addressing
@@ -221,6 +235,7 @@ impl Framebuffer {
     /// Gives all pixels the same color.
     pub fn clear(&mut self, color: Color) {
         self.pixels.fill(color);
+        self.tell(|probe| probe.cleared(color));
     }
 
     /// Gives the pixels of a rectangle a color; what lies outside the framebuffer is left out.
@@ -231,6 +246,37 @@ impl Framebuffer {
                 self.set(x, y, color);
             }
         }
+    }
+
+    /// All pixels, as the window that the drawing stages take, with whoever listens.
+    #[must_use]
+    pub fn window(&self) -> Window {
+        Window { rect: self.rect(), listener: self.listener.clone() }
+    }
+
+    /// From now on this one listens, and nobody else.
+    pub fn listen(&mut self, listener: Option<Listener>) {
+        self.listener = listener;
+    }
+
+    /// Who listens.
+    #[must_use]
+    pub fn listener(&self) -> Option<Listener> {
+        self.listener.clone()
+    }
+
+    /// Tells the listener, if there is one.
+    pub fn tell(&self, report: impl FnOnce(&dyn Probe)) {
+        if let Some(listener) = &self.listener {
+            report(listener.as_ref());
+        }
+    }
+
+    /// Changes pictures with another framebuffer; listeners stay where they are.
+    pub(crate) const fn swap_pictures(&mut self, other: &mut Self) {
+        std::mem::swap(&mut self.width, &mut other.width);
+        std::mem::swap(&mut self.height, &mut other.height);
+        std::mem::swap(&mut self.pixels, &mut other.pixels);
     }
 
     /// The rows as an image file holds them: the highest first.

@@ -15,8 +15,8 @@ use std::array::from_fn;
 
 use glam::DVec2;
 
-use crate::Rect;
 use crate::area::twice_signed_area;
+use crate::probe::{ScreenTriangle, Window};
 use crate::real::Real;
 use crate::scanline::{Corner, Edge, Payload, StepLimit, Walk, split};
 
@@ -59,20 +59,28 @@ pub fn linear<R: Real, const N: usize>(a: [R; N], b: [R; N], t: R) -> [R; N] {
 pub fn step_values<const N: usize>(
     corners: [Corner<[f64; N]>; 3],
     walk: Walk,
-    window: Rect,
+    window: impl Into<Window>,
     mut emit: impl FnMut(i32, i32, [f64; N]),
 ) {
+    let window = window.into();
+    window.tell(|probe| {
+        let values = corners.each_ref().map(|corner| corner.attributes.as_slice());
+        let corners = corners.map(|corner| corner.position);
+        let interpolation = Interpolation::Affine;
+        probe.triangle(&ScreenTriangle { corners, w: None, values, depth: None, interpolation, walk });
+    });
     for half in split(corners, linear).into_iter().flatten() {
         half.walk(
             |edge| [edge.start.attributes, edge.end.attributes],
             walk,
-            window,
+            window.rect,
             |span| {
                 let [start, end] = span.payload;
                 span.step(start, end, |x, values| emit(x, span.y, values));
             },
         );
     }
+    window.tell(|probe| probe.done());
 }
 // ANCHOR_END: step_values
 
@@ -159,11 +167,11 @@ pub fn step_parameter<const N: usize>(
     corners: [Corner<Projected<f64, N>>; 3],
     interpolation: Interpolation,
     walk: Walk,
-    window: Rect,
+    window: impl Into<Window>,
     mut emit: impl FnMut(i32, i32, Projected<f64, N>),
 ) {
     let corners = corners.map(|corner| corner.with((corner.attributes, ())));
-    step_parameter_and(corners, interpolation, walk, window, |x, y, point, ()| emit(x, y, point));
+    step_parameter_and(corners, interpolation, walk, window.into(), |x, y, point, ()| emit(x, y, point));
 }
 
 /// The same with a depth that changes evenly on the screen, beside t′ (chapter 7).
@@ -173,10 +181,27 @@ pub fn step_parameter_and_depth<const N: usize>(
     corners: [Corner<(Projected<f64, N>, f64)>; 3],
     interpolation: Interpolation,
     walk: Walk,
-    window: Rect,
+    window: impl Into<Window>,
     emit: impl FnMut(i32, i32, Projected<f64, N>, f64),
 ) {
-    step_parameter_and(corners, interpolation, walk, window, emit);
+    step_parameter_and(corners, interpolation, walk, window.into(), emit);
+}
+
+/// What changes evenly on the screen beside t′: nothing, or a depth.
+trait Evenly: Payload {
+    fn depth(self) -> Option<f64>;
+}
+
+impl Evenly for () {
+    fn depth(self) -> Option<f64> {
+        None
+    }
+}
+
+impl Evenly for f64 {
+    fn depth(self) -> Option<f64> {
+        Some(self)
+    }
 }
 
 /// What is stepped along edges and rows: t′, and something that changes evenly on the screen.
@@ -206,13 +231,21 @@ impl<E: Payload> Payload for Along<E> {
     }
 }
 
-fn step_parameter_and<E: Payload, const N: usize>(
+fn step_parameter_and<E: Evenly, const N: usize>(
     corners: [Corner<(Projected<f64, N>, E)>; 3],
     interpolation: Interpolation,
     walk: Walk,
-    window: Rect,
+    window: Window,
     mut emit: impl FnMut(i32, i32, Projected<f64, N>, E),
 ) {
+    window.tell(|probe| {
+        let values = corners.each_ref().map(|corner| corner.attributes.0.values.as_slice());
+        let w = Some(corners.map(|corner| corner.attributes.0.w));
+        let depth = corners[0].attributes.1.depth();
+        let depth = depth.map(|_| corners.map(|corner| corner.attributes.1.depth().unwrap_or_default()));
+        let corners = corners.map(|corner| corner.position);
+        probe.triangle(&ScreenTriangle { corners, w, values, depth, interpolation, walk });
+    });
     let between = |a, b, t| interpolation.between(a, b, t);
     let evenly_between = |a: E, b, t| a.stepped(E::slope(a, b, 1.0), t);
     let cut = |a: (_, E), b: (_, E), t| (between(a.0, b.0, t), evenly_between(a.1, b.1, t));
@@ -224,7 +257,7 @@ fn step_parameter_and<E: Payload, const N: usize>(
                 Along { t: 1.0, evenly: edge.end.attributes.1 },
             ]
         };
-        half.walk(payload, walk, window, |span| {
+        half.walk(payload, walk, window.rect, |span| {
             let [left, right] = span.payload;
             let start = between(half.left.start.attributes.0, half.left.end.attributes.0, left.t);
             let end = between(half.right.start.attributes.0, half.right.end.attributes.0, right.t);
@@ -232,12 +265,14 @@ fn step_parameter_and<E: Payload, const N: usize>(
             span.step(row[0], row[1], |x, along| emit(x, span.y, between(start, end, along.t), along.evenly));
         });
     }
+    window.tell(|probe| probe.done());
 }
 // ANCHOR_END: step_parameter
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Rect;
     use crate::transform::{perspective, perspective_divide};
     use glam::{DVec3, dvec2, dvec3};
     use proptest::prelude::*;

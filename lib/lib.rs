@@ -29,7 +29,7 @@
 //!   more mipmap        smaller copies of a texture, levels of detail
 //!   more srgb          what the numbers of a picture mean as light
 //!   more varyings      weights corrected by ω, derivatives
-//!   more edge          the exact rasterizer: edge functions, pixel centres, the top-left rule
+//!   more edge          the exact rasterizer: edge functions, pixel centers, the top-left rule
 //!   more antialias     several samples in each pixel
 //!   …    program       what the eleven `main`s share; nothing above imports it
 //! ```

@@ -7,7 +7,7 @@
 //! use rasterbook::{Color, Framebuffer, line};
 //!
 //! let mut framebuffer = Framebuffer::new(8, 8);
-//! let window = framebuffer.rect();
+//! let window = framebuffer.window();
 //! line::dda(dvec2(0.0, 1.0), dvec2(3.0, 4.0), line::StepAxis::Longer, window, |x, y| {
 //!     framebuffer.set(x, y, Color::RED);
 //! });
@@ -18,7 +18,7 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use crate::Rect;
+use crate::probe::Window;
 
 /// Which coordinate a line steps by one pixel at a time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -50,12 +50,14 @@ pub enum StepAxis {
 ///
 /// From `b` to `a` the pixels are the same: a line always runs from its left end, or from its lower end if it is steep.
 /// A point that is not finite draws nothing. Source: book, section 2.1.
-pub fn dda(a: DVec2, b: DVec2, axis: StepAxis, window: Rect, mut emit: impl FnMut(i32, i32)) {
+pub fn dda(a: DVec2, b: DVec2, axis: StepAxis, window: impl Into<Window>, mut emit: impl FnMut(i32, i32)) {
     if !(a.is_finite() && b.is_finite()) {
         return;
     }
+    let window = window.into();
+    window.tell(|probe| probe.line(a, b, axis));
     let mut emit_inside = |x: i32, y: i32| {
-        if window.contains(x, y) {
+        if window.rect.contains(x, y) {
             emit(x, y);
         }
     };
@@ -64,11 +66,12 @@ pub fn dda(a: DVec2, b: DVec2, axis: StepAxis, window: Rect, mut emit: impl FnMu
     let slope = (b.y - a.y) / (b.x - a.x);
     if slope.abs() < 1.0 || axis == StepAxis::X {
         let (start, end) = if a.x < b.x { (a, b) } else { (b, a) };
-        step([start.x, start.y], end.x, slope, window.columns(), &mut emit_inside);
+        step([start.x, start.y], end.x, slope, window.rect.columns(), &mut emit_inside);
     } else {
         let (start, end) = if a.y < b.y { (a, b) } else { (b, a) };
-        step([start.y, start.x], end.y, 1.0 / slope, window.rows(), |y, x| emit_inside(x, y));
+        step([start.y, start.x], end.y, 1.0 / slope, window.rect.rows(), |y, x| emit_inside(x, y));
     }
+    window.tell(|probe| probe.done());
 }
 
 /// Steps the first coordinate by one while it is below `end`, and the second by `slope`, within `visible`.
@@ -96,6 +99,7 @@ fn step(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Rect;
     use glam::dvec2;
     use proptest::prelude::*;
 
@@ -172,7 +176,7 @@ mod tests {
         }
 
         #[test]
-        fn neighbours_touch(ax in 0.0..200.0, ay in 0.0..200.0, bx in 0.0..200.0, by in 0.0..200.0) {
+        fn neighbors_touch(ax in 0.0..200.0, ay in 0.0..200.0, bx in 0.0..200.0, by in 0.0..200.0) {
             for pair in pixels(dvec2(ax, ay), dvec2(bx, by)).windows(2) {
                 prop_assert!((pair[0].0 - pair[1].0).abs() <= 1 && (pair[0].1 - pair[1].1).abs() <= 1);
             }

@@ -67,7 +67,7 @@ impl<A> Mesh<A> {
         Ok(Self { vertices, indices: None })
     }
 
-    /// Triangles that name their vertices, so that neighbours share them.
+    /// Triangles that name their vertices, so that neighbors share them.
     ///
     /// # Errors
     /// If the number of indices is not a multiple of three, or one of them names no vertex.

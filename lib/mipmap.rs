@@ -65,7 +65,7 @@ impl MipMaps {
 
     // ANCHOR: level_of_detail
     /// Which level fits: λ = log₂ ρ, where ρ is the longer one of the two ways in texels that (u, v) goes from a pixel to
-    /// its right and to its upper neighbour. Limited to the levels that there are.
+    /// its right and to its upper neighbor. Limited to the levels that there are.
     ///
     /// ```text
     ///    a pixel, seen on the texture:
@@ -125,7 +125,7 @@ impl MipMaps {
 /// The next smaller copy.
 fn halved(texture: &Texture) -> Texture {
     let [width, height] = [texture.width(), texture.height()].map(|side| (side / 2).max(1));
-    // The neighbour of a single column or row is itself.
+    // The neighbor of a single column or row is itself.
     let pair = |i: u32, count: u32| [2 * i, 2 * i + 1].map(|i| i.min(count - 1) as usize);
     let mean = |x: u32, y: u32| {
         let [columns, rows] = [pair(x, texture.width()), pair(y, texture.height())];

@@ -45,7 +45,7 @@ use crate::depth::{DepthEncoding, Target};
 use crate::interpolate::Interpolation;
 use crate::merge::Merge;
 use crate::mesh::Mesh;
-use crate::probe::Probe;
+use crate::probe::{Assembled, Probe, Vertex};
 use crate::raster::Rasterizer;
 use crate::scanline::Walk;
 use crate::shader::Shader;
@@ -119,7 +119,7 @@ impl RenderState {
 /// Draws a mesh into a target.
 ///
 /// Fragments reach a pixel in the order of the triangles in the mesh; of a clipped triangle, in the order of its fan.
-pub fn draw<S: Shader<N>, Z: Rasterizer, P: Probe, const N: usize>(
+pub fn draw<S: Shader<N>, Z: Rasterizer, P: Probe + ?Sized, const N: usize>(
     mesh: &Mesh<S::Attributes>,
     shader: &S,
     state: &RenderState,
@@ -131,15 +131,18 @@ pub fn draw<S: Shader<N>, Z: Rasterizer, P: Probe, const N: usize>(
     let shaded: Vec<ClipVertex<N>> = mesh.vertices().iter().map(|vertex| shader.vertex(vertex)).collect();
 
     // 2. Primitive assembly: three vertices make a triangle.
-    let triangles = mesh.triangles().map(|triangle| triangle.map(|index| shaded[index]));
+    let triangles = mesh.triangles().map(|triangle| (triangle, triangle.map(|index| shaded[index])));
 
     // 3. Clipping, in clip space, where edges and values are still straight.
     let planes = state.clip_volume.planes(state.depth_range);
-    let polygons = triangles.enumerate().map(|(number, triangle)| {
-        probe.triangle(number, &triangle);
-        let polygon = clip_triangle(triangle, &planes, state.clip_test);
-        probe.clipped(&polygon);
-        polygon
+    let polygons = triangles.map(|(indices, triangle)| {
+        probe.assembled(&Assembled {
+            vertices: triangle.each_ref().map(Vertex::from),
+            model: &|| all_three(indices.map(|index| shader.position(&mesh.vertices()[index]))),
+            planes: &planes,
+            test: state.clip_test,
+        });
+        clip_triangle(triangle, &planes, state.clip_test)
     });
 
     // 4. The perspective divide, and triangles again.
@@ -153,3 +156,7 @@ pub fn draw<S: Shader<N>, Z: Rasterizer, P: Probe, const N: usize>(
     rasterizer.draw(pieces, state, shader, target, probe);
 }
 // ANCHOR_END: draw
+
+fn all_three<T>([a, b, c]: [Option<T>; 3]) -> Option<[T; 3]> {
+    Some([a?, b?, c?])
+}

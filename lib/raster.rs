@@ -11,7 +11,7 @@ use crate::framebuffer::Rounding;
 use crate::interpolate::{Projected, step_parameter_and_depth};
 use crate::merge::merge;
 use crate::pipeline::RenderState;
-use crate::probe::{FragmentEvent, Probe};
+use crate::probe::{FragmentEvent, Probe, Vertex};
 use crate::scanline::Corner;
 use crate::shader::Shader;
 use crate::varyings::{TriangleVaryings, weight_gradients};
@@ -19,7 +19,7 @@ use crate::varyings::{TriangleVaryings, weight_gradients};
 /// Draws triangles, NDC → target.
 pub trait Rasterizer {
     /// Draws the triangles in order. Fragments reach a pixel in the order of their triangles.
-    fn draw<S: Shader<N>, P: Probe, const N: usize>(
+    fn draw<S: Shader<N>, P: Probe + ?Sized, const N: usize>(
         &self,
         triangles: impl Iterator<Item = [NdcVertex<N>; 3]>,
         state: &RenderState,
@@ -37,7 +37,7 @@ pub trait Rasterizer {
 pub struct Scanline;
 
 impl Rasterizer for Scanline {
-    fn draw<S: Shader<N>, P: Probe, const N: usize>(
+    fn draw<S: Shader<N>, P: Probe + ?Sized, const N: usize>(
         &self,
         triangles: impl Iterator<Item = [NdcVertex<N>; 3]>,
         state: &RenderState,
@@ -52,7 +52,7 @@ impl Rasterizer for Scanline {
 }
 
 // ANCHOR: draw_triangle
-fn draw_triangle<S: Shader<N>, P: Probe, const N: usize>(
+fn draw_triangle<S: Shader<N>, P: Probe + ?Sized, const N: usize>(
     triangle: &[NdcVertex<N>; 3],
     state: &RenderState,
     shader: &S,
@@ -62,15 +62,15 @@ fn draw_triangle<S: Shader<N>, P: Probe, const N: usize>(
     // 5. Culling, by the signed area in NDC.
     let [a, b, c] = triangle.map(|vertex| vertex.position.truncate());
     let signed_area = twice_signed_area(a, b, c);
-    probe.piece(triangle, signed_area);
+    probe.piece(triangle.each_ref().map(Vertex::from), signed_area);
     if !is_drawable(signed_area) || state.cull.culls(signed_area, state.front_face) {
         probe.culled();
         return;
     }
 
     // 6. Viewport: NDC → screen.
-    let window = target.color.rect();
-    let viewport = state.viewport_in(window);
+    let window = target.color.window();
+    let viewport = state.viewport_in(window.rect);
     let corners = triangle.map(|vertex| {
         let projected = Projected { w: vertex.w, values: vertex.varyings };
         Corner {

@@ -24,6 +24,7 @@ use glam::{DVec2, dvec2};
 
 use crate::Rect;
 use crate::area::{is_drawable, twice_signed_area};
+use crate::probe::Window;
 
 /// Whether the two sides of a row may pass the ends of their edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -218,6 +219,20 @@ impl<A: Copy> Half<A> {
     /// Rows run from trunc(y) of the lower end while y is below the upper end. `payload` says what is stepped along an
     /// edge: its values at the edge's start and end. Source: book, sections 2.2 and 3.2.4.
     pub fn walk<P: Payload>(
+        &self,
+        payload: impl Fn(&Edge<A>) -> [P; 2],
+        walk: Walk,
+        window: impl Into<Window>,
+        mut emit: impl FnMut(Span<P>),
+    ) {
+        let window = window.into();
+        let ends = |edge: &Edge<A>| [edge.start.position, edge.end.position];
+        window.tell(|probe| probe.half(ends(&self.left), ends(&self.right), walk));
+        self.walk_rows(payload, walk, window.rect, &mut emit);
+        window.tell(|probe| probe.done());
+    }
+
+    fn walk_rows<P: Payload>(
         &self,
         payload: impl Fn(&Edge<A>) -> [P; 2],
         walk: Walk,

@@ -31,6 +31,8 @@
 //! assert_eq!(shader.fragment([0.5_f64]).color, [127.5, 127.5, 127.5, 1.0]);
 //! ```
 
+use glam::DVec3;
+
 use crate::clip::ClipVertex;
 use crate::real::{Mask, Real};
 use crate::varyings::Derivatives;
@@ -46,6 +48,11 @@ pub trait Shader<const N: usize> {
 
     /// Attributes → position in clip space, and varyings.
     fn vertex(&self, attributes: &Self::Attributes) -> ClipVertex<N>;
+
+    /// Attributes → position in the space of the model, for those who ask where a vertex came from; drawing does not.
+    fn position(&self, _: &Self::Attributes) -> Option<DVec3> {
+        None
+    }
 
     /// Varyings → color. Written for any number type, so that one source serves one fragment or several at a time;
     /// for that, it keeps no state.

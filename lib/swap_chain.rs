@@ -43,7 +43,7 @@ impl SwapChain {
     /// Shows the finished picture in the back buffer. The two change places, which takes no time; the back buffer then
     /// holds the picture before, and wants to be cleared.
     pub const fn present(&mut self, back: &mut Framebuffer) {
-        std::mem::swap(&mut self.front, back);
+        self.front.swap_pictures(back);
     }
 }
 

@@ -150,7 +150,7 @@ impl Texture {
 /// Mixes the four texels around (u, v) of a picture of `size` texels.
 ///
 /// ```text
-///     ┌───────┬───────┐      Texel centres lie at halves: (u, v) is between the columns
+///     ┌───────┬───────┐      Texel centers lie at halves: (u, v) is between the columns
 ///     │   c───┼───d   │      ⌊u·width − ½⌋ and the next one, and the fraction is the weight
 ///     ├───│───┼───│───┤      of the next one; rows likewise. Each of the four goes through
 ///     │   a─p─┼───b   │      the address mode by itself.
@@ -220,7 +220,7 @@ mod tests {
     fn between_texels() {
         let texture = Texture::new(2, 2, [0, 100, 40, 140].map(Color::gray).to_vec());
         let at = |u: f64, v, mode| texture.bilinear([u, v], mode)[0];
-        assert_eq!(at(0.25, 0.25, AddressMode::Clamp), 0.0, "a centre is the texel alone");
+        assert_eq!(at(0.25, 0.25, AddressMode::Clamp), 0.0, "a center is the texel alone");
         assert_eq!(at(0.5, 0.25, AddressMode::Clamp), 50.0);
         assert_eq!(at(0.5, 0.5, AddressMode::Clamp), 70.0, "the mean of all four");
         assert_eq!(at(0.0, 0.25, AddressMode::Clamp), 0.0);

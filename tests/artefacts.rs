@@ -145,7 +145,7 @@ fn several_samples_make_shades() {
 
 #[test]
 fn three_filters_flicker_less_and_less() {
-    // How much neighbours differ far away, just below the horizon.
+    // How much neighbors differ far away, just below the horizon.
     let unrest = |name| {
         let picture = draw("ch10_matrices_lighting", name);
         let red = |x: i32, y: i32| f64::from(picture.get(x, y).expect("inside").channels()[0]);

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::collections::BTreeSet;
 
 use glam::{DVec2, DVec4, dvec2, dvec3, dvec4};
-use rasterbook::clip::{ClipTest, ClipVertex, ClipVolume, DepthRange, NdcVertex, Plane, clip_triangle, fan};
+use rasterbook::clip::{ClipTest, ClipVertex, ClipVolume, DepthRange, Plane, clip_triangle, fan};
 use rasterbook::cull::CullMode;
 use rasterbook::depth::{DepthBuffer, DepthTest, Target};
 use rasterbook::interpolate::{Interpolation, Projected, step_values};
@@ -12,7 +12,7 @@ use rasterbook::line::{StepAxis, dda};
 use rasterbook::merge::Merge;
 use rasterbook::mesh::Mesh;
 use rasterbook::pipeline::{RenderState, draw};
-use rasterbook::probe::{FragmentEvent, Probe};
+use rasterbook::probe::{FragmentEvent, Probe, Vertex};
 use rasterbook::raster::Scanline;
 use rasterbook::real::Real;
 use rasterbook::scanline::{Corner, EdgeWalk, Payload, StepLimit, Walk, split};
@@ -177,7 +177,7 @@ impl Shader<3> for Flat {
 }
 
 /// Hears the pixel and the color of every fragment, and how many pieces were culled.
-#[derive(Default)]
+#[derive(Debug, Default)]
 struct Heard {
     fragments: RefCell<Vec<(i32, i32, [f64; 4])>>,
     pieces: RefCell<usize>,
@@ -185,7 +185,7 @@ struct Heard {
 }
 
 impl Probe for Heard {
-    fn piece<const N: usize>(&self, _: &[NdcVertex<N>; 3], _: f64) {
+    fn piece(&self, _: [Vertex<'_>; 3], _: f64) {
         *self.pieces.borrow_mut() += 1;
     }
 

@@ -25,9 +25,9 @@ use rasterbook::{Color, Rect};
 
 // ---- An oracle -----------------------------------------------------------------------------------------------------
 
-/// How often a closed line winds round the centre of a pixel, by another formulation than that of the library.
+/// How often a closed line winds round the center of a pixel, by another formulation than that of the library.
 ///
-/// The top-left rule is a shift: a centre belongs to what lies a hair to the right of it and a far smaller hair below.
+/// The top-left rule is a shift: a center belongs to what lies a hair to the right of it and a far smaller hair below.
 /// From there a ray runs to the right; an edge that crosses it upwards counts 1, one that crosses it downwards −1. All
 /// numbers are whole and wide, so that nothing is rounded.
 fn winding_number(outline: &[Subpixel], x: i32, y: i32) -> i32 {
@@ -37,19 +37,19 @@ fn winding_number(outline: &[Subpixel], x: i32, y: i32) -> i32 {
     for (i, &start) in outline.iter().enumerate() {
         let end = outline[(i + 1) % outline.len()];
         let [[ax, ay], [bx, by]] = [start, end].map(|point| point.map(i128::from));
-        // Points as high as the centre are above it, since it is a hair lower.
+        // Points as high as the center are above it, since it is a hair lower.
         let (is_start_above, is_end_above) = (ay >= py, by >= py);
         if is_start_above == is_end_above {
             continue;
         }
-        // Where the edge crosses the height py: x = ax + (bx − ax)(py − ay)/(by − ay). Right of the centre?
+        // Where the edge crosses the height py: x = ax + (bx − ax)(py − ay)/(by − ay). Right of the center?
         let (numerator, denominator) = ((bx - ax) * (py - ay), by - ay);
         let is_right = if denominator > 0 {
             numerator > (px - ax) * denominator
         } else {
             numerator < (px - ax) * denominator
         };
-        // On a crossing exactly at the centre the hair to the right decides: the edge is left of it.
+        // On a crossing exactly at the center the hair to the right decides: the edge is left of it.
         if is_right {
             count += if is_end_above { 1 } else { -1 };
         }
@@ -86,7 +86,7 @@ fn winding_numbers(outline: &[DVec2]) -> Vec<i32> {
         .collect()
 }
 
-/// A coordinate: anywhere, on a centre, on a border, at 1/256 steps about a centre, or far away.
+/// A coordinate: anywhere, on a center, on a border, at 1/256 steps about a center, or far away.
 fn coordinate() -> impl Strategy<Value = f64> {
     prop_oneof![
         -8.0..56.0,
@@ -158,7 +158,7 @@ proptest! {
         radii in prop::collection::vec(4.0..20.0, 3..12), cuts in prop::collection::vec((any::<prop::sample::Index>(), 0.2..0.6, 0.2..0.4), 0..12),
         center in (20.0..28.0, 20.0..28.0), rotation in prop_oneof![0.0..TAU, Just(0.0), Just(TAU / 4.0), Just(TAU / 8.0)],
     ) {
-        // A polygon round a centre, cut into triangles, and these cut into three now and then.
+        // A polygon round a center, cut into triangles, and these cut into three now and then.
         let count = radii.len() as f64;
         let mut points: Vec<DVec2> = vec![DVec2::ZERO];
         points.extend(radii.iter().enumerate().map(|(i, radius)| DVec2::from_angle(TAU * i as f64 / count) * *radius));
@@ -211,6 +211,7 @@ impl Shader<3> for Flat {
 }
 
 /// Counts the fragments of each pixel.
+#[derive(Debug)]
 struct Counter(RefCell<Vec<u32>>, Rect);
 
 impl Counter {
@@ -284,7 +285,7 @@ proptest! {
             counter.0.into_inner()
         };
         // Cut points are rounded to 1/256 pixel: the parts of an edge may lie a hair beside the whole, but where the
-        // triangle covers a pixel and its neighbours, the parts do, once.
+        // triangle covers a pixel and its neighbors, the parts do, once.
         let (one, other) = (count(&[Plane::through_eye(normal)]), count(&[Plane::through_eye(-normal)]));
         let whole = count(&[]);
         let both: Vec<u32> = one.iter().zip(&other).map(|(a, b)| a + b).collect();
@@ -364,7 +365,7 @@ fn facing_is_decided_where_pixels_are() {
 }
 
 #[test]
-fn values_are_taken_at_centres_and_rounded_to_nearest() {
+fn values_are_taken_at_centers_and_rounded_to_nearest() {
     // A triangle twice as large as the screen; red grows by 3.9 a pixel from the left border on.
     let vertices = [(-1.0, -1.0, 0.0), (3.0, -1.0, 2.0 * 40.0 * 3.9), (-1.0, 3.0, 0.0)]
         .map(|(x, y, red)| (dvec4(x, y, 0.0, 1.0), [red, 254.5, 254.49]));
@@ -393,3 +394,100 @@ fn blending_counts_every_pixel_once() {
 }
 
 // ---- A production rasterizer ---------------------------------------------------------------------------------------
+
+/// The lines of a fixture: what stands before and after the colon. `tests/fixtures/make_fixtures.py` made them.
+fn lines(fixture: &str) -> impl Iterator<Item = (Vec<f64>, &str)> {
+    let lines = fixture.lines().filter(|line| !line.starts_with('#'));
+    lines.map(|line| {
+        let (triangle, seen) = line.split_once(':').expect("a colon");
+        let numbers = triangle.split_whitespace().map(|number| number.parse().expect("a number"));
+        (numbers.collect(), seen.trim())
+    })
+}
+
+#[test]
+fn coverage_is_that_of_a_production_rasterizer() {
+    let mut count = 0;
+    for (numbers, seen) in lines(include_str!("fixtures/coverage.txt")) {
+        let mut expected = Vec::new();
+        let mut spans = seen.split_whitespace();
+        let first_row = spans.next().expect("a row").parse().unwrap_or(0);
+        for (y, span) in (first_row..).zip(spans) {
+            if let Some((start, end)) = span.split_once('-') {
+                let [start, end]: [i32; 2] = [start, end].map(|number| number.parse().expect("a column"));
+                expected.extend((start..end).map(|x| (x, y)));
+            }
+        }
+        let corner = |i: usize| dvec2(numbers[2 * i], numbers[2 * i + 1]) / 256.0;
+        let coverage = Coverage::new([corner(0), corner(1), corner(2)]);
+        let window = Rect::sized(64, 64);
+        let covered: Vec<(i32, i32)> =
+            coverage.iter().flat_map(|coverage| coverage.pixels(window)).map(|(x, y, _)| (x, y)).collect();
+        assert_eq!(covered, expected, "{numbers:?}");
+        count += 1;
+    }
+    assert_eq!(count, 445);
+}
+
+/// Colors of 0..=1.
+struct Bright;
+
+impl Shader<3> for Bright {
+    type Attributes = (DVec4, [f64; 3]);
+
+    fn vertex(&self, &(position, varyings): &Self::Attributes) -> ClipVertex<3> {
+        ClipVertex { position, varyings }
+    }
+
+    fn fragment<R: Real>(&self, color: [R; 3]) -> Shaded<R> {
+        Shaded::opaque(color.map(|channel| channel * R::of(255.0)))
+    }
+}
+
+fn interpolation_is_that_of_a_production_rasterizer<R: Scalar>() {
+    let mut count = 0;
+    for (numbers, seen) in lines(include_str!("fixtures/interpolation.txt")) {
+        let vertex = |i: usize| {
+            let [x, y, w, r, g, b] = numbers[6 * i..6 * i + 6] else { panic!("six numbers a vertex") };
+            let ndc = (dvec2(x, y) / 256.0 / 16.0 - 1.0).extend(0.0);
+            NdcVertex { position: ndc, w, varyings: [r, g, b] }
+        };
+        let mut target = Target::new(32, 32);
+        let counter = Counter::new(&target);
+        target.clear(Color::BLACK, 1.0);
+        let triangle = [vertex(0), vertex(1), vertex(2)];
+        Exact::<R>::new().draw(
+            [triangle].into_iter(),
+            &RenderState::default(),
+            &Bright,
+            &mut target,
+            &counter,
+        );
+        let mut covered = 0;
+        for row in seen.split(';').filter(|row| *row != "-") {
+            let mut words = row.split_whitespace();
+            let mut next = || words.next().expect("a word").parse::<i32>().expect("a number");
+            let (y, first) = (next(), next());
+            for (x, word) in (first..).zip(words) {
+                let expected = u32::from_str_radix(word, 16).expect("a color").to_be_bytes();
+                let found = target.color.get(x, y).expect("inside").channels();
+                let differs = (0..3).any(|k| found[k].abs_diff(expected[k + 1]) > 1);
+                assert!(!differs, "{found:?} is not {expected:?} at ({x}, {y}) of {numbers:?}");
+                covered += 1;
+            }
+        }
+        assert_eq!(counter.0.into_inner().iter().sum::<u32>(), covered);
+        count += 1;
+    }
+    assert_eq!(count, 42);
+}
+
+#[test]
+fn colors_are_those_of_a_production_rasterizer() {
+    interpolation_is_that_of_a_production_rasterizer::<f64>();
+}
+
+#[test]
+fn colors_are_those_of_a_production_rasterizer_in_single_precision_too() {
+    interpolation_is_that_of_a_production_rasterizer::<f32>();
+}

@@ -5,16 +5,17 @@ use std::cell::RefCell;
 use glam::{DVec2, DVec3, dvec3};
 use proptest::prelude::*;
 use rasterbook::area::Winding;
-use rasterbook::clip::{ClipVertex, ClipVolume, NdcVertex};
+use rasterbook::clip::{ClipVertex, ClipVolume};
 use rasterbook::cull::CullMode;
 use rasterbook::depth::{DepthEncoding, DepthTest, Target};
+use rasterbook::edge::Exact;
 use rasterbook::interpolate::Interpolation;
 use rasterbook::merge::{Merge, Verdict};
 use rasterbook::mesh::Mesh;
-use rasterbook::model::ModelVertex;
+use rasterbook::model::{Model, ModelVertex};
 use rasterbook::pipeline::{RenderState, draw};
-use rasterbook::probe::{FragmentEvent, Probe, Silent};
-use rasterbook::raster::Scanline;
+use rasterbook::probe::{Assembled, FragmentEvent, Probe, Silent, Vertex};
+use rasterbook::raster::{Rasterizer, Scanline};
 use rasterbook::real::Real;
 use rasterbook::scanline::{StepLimit, Walk};
 use rasterbook::shader::{Shaded, Shader};
@@ -211,7 +212,7 @@ struct Seen {
     color: [f64; 4],
 }
 
-#[derive(Default)]
+#[derive(Debug, Default)]
 struct Recorder {
     fragments: RefCell<Vec<Seen>>,
     triangles: RefCell<usize>,
@@ -221,13 +222,13 @@ struct Recorder {
 }
 
 impl Probe for Recorder {
-    fn triangle<const N: usize>(&self, _: usize, _: &[ClipVertex<N>; 3]) {
+    fn assembled(&self, _: &Assembled<'_>) {
         *self.triangles.borrow_mut() += 1;
     }
 
-    fn piece<const N: usize>(&self, vertices: &[NdcVertex<N>; 3], _: f64) {
+    fn piece(&self, vertices: [Vertex<'_>; 3], _: f64) {
         let viewport = Viewport::whole(Rect::sized(SIZE.0, SIZE.1));
-        let [a, b, c] = vertices.map(|vertex| viewport.pixel_corners(vertex.position));
+        let [a, b, c] = vertices.map(|vertex| viewport.pixel_corners(vertex.position.truncate()));
         self.edges.borrow_mut().extend([[a, b], [b, c], [c, a]]);
     }
 
@@ -352,14 +353,14 @@ impl Shader<2> for Coordinates {
 }
 
 /// Counts fragments whose texel lies outside the texels of their own triangle's corners.
-#[derive(Default)]
+#[derive(Debug, Default)]
 struct Strays {
     range: RefCell<[[f64; 2]; 2]>,
     count: RefCell<usize>,
 }
 
 impl Probe for Strays {
-    fn piece<const N: usize>(&self, vertices: &[NdcVertex<N>; 3], _: f64) {
+    fn piece(&self, vertices: [Vertex<'_>; 3], _: f64) {
         let of = |k: usize, pick: fn(f64, f64) -> f64| {
             vertices.iter().map(|v| v.varyings[k]).reduce(pick).unwrap_or_default()
         };
@@ -381,18 +382,19 @@ impl Probe for Strays {
 
 #[test]
 fn spikes_are_texels_from_outside_a_triangle() {
-    let ball = rasterbook::program::assets::model("sphere.obj").expect("an asset");
-    let strays = |limit| {
+    fn strays(limit: StepLimit, rasterizer: &impl Rasterizer, ball: &Model) -> usize {
         let walk = Walk { limit, ..Walk::default() };
         let state = RenderState { walk, cull: CullMode::Back, ..RenderState::default() };
         let mut target = Target::new(640, 480);
         target.clear(state.clear_color, state.clear_depth);
         let probe = Strays::default();
-        draw(&ball.parts[0].mesh, &Coordinates, &state, &Scanline, &mut target, &probe);
+        draw(&ball.parts[0].mesh, &Coordinates, &state, rasterizer, &mut target, &probe);
         probe.count.into_inner()
-    };
-    let [overrun, edges, everywhere] =
-        [StepLimit::Overrun, StepLimit::Edges, StepLimit::Everywhere].map(strays);
+    }
+    let ball = rasterbook::program::assets::model("sphere.obj").expect("an asset");
+    let [overrun, edges, everywhere] = [StepLimit::Overrun, StepLimit::Edges, StepLimit::Everywhere]
+        .map(|limit| strays(limit, &Scanline, &ball));
+    assert_eq!(strays(StepLimit::Overrun, &Exact::<f64>::new(), &ball), 0, "nothing is stepped");
     assert_eq!(everywhere, 0);
     assert!(edges > 0, "the ends of rows still pass");
     assert!(overrun > edges + 1000, "{overrun} without the remedy, {edges} with it");

@@ -52,10 +52,10 @@ pub(crate) const CHAPTER: Chapter = Chapter {
             .source("second, third and fourth note"),
         Variant::new("one-sample", samples::one_sample, "one sample in the middle of each pixel: stairs along the edges, a broken line where triangles pierce each other, and a false pattern where stripes are narrower than pixels")
         .size(560, 420),
-        Variant::new("supersampled", samples::supersampled, "2×2 samples a pixel, each with its own color and depth, averaged: three shades along every edge, and in the stripes")
+        Variant::new("supersampled", samples::supersampled, "2×2 samples a pixel, each with its own color and depth, averaged: three shades along every edge; the stripes become an uneven gray")
         .size(560, 420)
             .source("fourth note"),
-        Variant::new("supersampled-16", samples::supersampled_16, "4×4 samples a pixel: smoother still, and the narrow stripes turn gray")
+        Variant::new("supersampled-16", samples::supersampled_16, "4×4 samples a pixel: smoother still; of the stripes' false pattern a faint rest is left")
         .size(560, 420),
         Variant::new("multisampled", samples::multisampled, "four samples a pixel for coverage and depth, one color for all of them: smooth edges, but the false pattern of the stripes is back")
         .size(560, 420),

@@ -35,7 +35,7 @@ impl Patch {
 enum Shading {
     /// For each sample, at its place.
     PerSample,
-    /// Once, at the centre of the pixel.
+    /// Once, at the center of the pixel.
     PerPixel,
 }
 
@@ -86,11 +86,13 @@ fn scene(framebuffer: &mut Framebuffer, pattern: &Pattern, shading: Shading) {
         let corners = [tip, root - aside, root + aside].map(|point| [point.x, point.y, 1.0]);
         patches.push(Patch { corners, paint: Paint::Plain(light) });
     }
-    let mut samples = Samples::new(80, 60, pattern);
-    for patch in &patches {
-        draw(&mut samples, patch, shading);
-    }
-    picture::paste(framebuffer, &picture::enlarged(&samples.resolved(), 7), 0, 0);
+    picture::draw_enlarged(framebuffer, (80, 60), 7, |screen| {
+        let mut samples = Samples::new(80, 60, pattern).heard_by(screen.listener());
+        for patch in &patches {
+            draw(&mut samples, patch, shading);
+        }
+        picture::paste(screen, &samples.resolved(), 0, 0);
+    });
 }
 // ANCHOR_END: samples_scene
 

@@ -23,7 +23,7 @@ fn fill_half(framebuffer: &mut Framebuffer, half: &Half<()>, walk: Walk, color: 
     half.walk(
         |_| [(), ()],
         walk,
-        framebuffer.rect(),
+        framebuffer.window(),
         |span: Span<()>| {
             for x in span.columns() {
                 framebuffer.set(x, span.y, color);

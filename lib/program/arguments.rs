@@ -31,6 +31,18 @@ pub(super) struct Request {
     pub(super) as_is: bool,
     pub(super) flat: bool,
     pub(super) rasterizer: Option<RasterizerChoice>,
+    pub(super) inspect: Option<(i32, i32)>,
+    pub(super) format: Format,
+    pub(super) verbose: bool,
+}
+
+/// The form of a history.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Format {
+    /// For people.
+    Text,
+    /// For programs.
+    Json,
 }
 
 /// What `--compare` compares with.
@@ -65,6 +77,9 @@ impl Request {
             as_is: matches.get_flag("as-is"),
             flat: matches.get_flag("flat"),
             rasterizer: matches.get_one("rasterizer").copied(),
+            inspect: matches.get_one("inspect").copied(),
+            format: if text("format").as_deref() == Some("json") { Format::Json } else { Format::Text },
+            verbose: matches.get_flag("verbose"),
         })
     }
 }
@@ -87,6 +102,7 @@ fn command(chapter: &Chapter) -> Command {
         .args(how_to_draw(chapter))
         .args(subject(chapter))
         .arg(rasterizer(chapter))
+        .args(what_to_tell())
 }
 
 fn switch(id: &'static str, help: &'static str) -> Arg {
@@ -123,6 +139,23 @@ fn subject(chapter: &Chapter) -> [Arg; 4] {
         switch("flat", "Give the model the normals of its faces, so that every edge shows").requires("model"),
     ]
     .map(|argument| argument.hide(is_hidden))
+}
+
+/// How a picture came about.
+fn what_to_tell() -> [Arg; 3] {
+    let inspect = "Tell all that happened at the pixel (X, Y), y up from the bottom; no picture is written";
+    [
+        option("inspect", "X,Y", inspect)
+            .value_parser(parse_pixel)
+            .allow_hyphen_values(true)
+            .conflicts_with_all(["all", "animate", "compare", "zoom", "out"]),
+        option("format", "FORM", "The form of what is told: text, or json for programs [default: text]")
+            .value_parser(["text", "json"])
+            .requires("inspect"),
+        switch("verbose", "Tell also what came near the pixel and did not reach it")
+            .short('v')
+            .requires("inspect"),
+    ]
 }
 
 /// Which rasterizer the pipeline ends with.
@@ -192,14 +225,19 @@ fn parse_size(text: &str) -> Result<(u32, u32), String> {
     Ok((width, height))
 }
 
+fn parse_pixel(text: &str) -> Result<(i32, i32), String> {
+    let coordinates = text
+        .split_once(',')
+        .and_then(|(x, y)| Some((x.trim().parse::<i32>().ok()?, y.trim().parse::<i32>().ok()?)));
+    coordinates.ok_or_else(|| "expected X,Y, such as 320,240".to_owned())
+}
+
 fn parse_zoom(text: &str) -> Result<Zoom, String> {
     let (factor, center) = match text.split_once('@') {
         None => (text, None),
         Some((factor, pixel)) => {
-            let coordinates = pixel
-                .split_once(',')
-                .and_then(|(x, y)| Some((x.trim().parse::<i32>().ok()?, y.trim().parse::<i32>().ok()?)));
-            (factor, Some(coordinates.ok_or("expected N@X,Y, such as 12@200,200")?))
+            let center = parse_pixel(pixel).map_err(|_| "expected N@X,Y, such as 12@200,200")?;
+            (factor, Some(center))
         }
     };
     let allowed = 1..=Zoom::MAX_FACTOR;

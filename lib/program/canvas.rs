@@ -6,7 +6,7 @@ use crate::edge::Exact;
 use crate::mesh::Mesh;
 use crate::model::{Model, Part};
 use crate::pipeline::{RenderState, draw};
-use crate::probe::Silent;
+use crate::probe::{Listener, Probe, Silent};
 use crate::raster::Scanline;
 use crate::shader::Shader;
 use crate::texture::Texture;
@@ -45,6 +45,8 @@ pub struct Canvas {
     /// The number of the frame, 0 if the picture is no animation.
     pub frame: u32,
     rasterizer: RasterizerChoice,
+    /// Who listens to the pipeline; the target carries the same listener.
+    listener: Option<Listener>,
     aspect: f64,
 }
 
@@ -53,12 +55,11 @@ impl Canvas {
     pub(super) fn new(sitting: &Sitting<'_>, native: (u32, u32)) -> Self {
         let aspect = f64::from(native.0) / f64::from(native.1);
         let (width, height) = sitting.size;
-        Self {
-            target: Target::new(width, height),
-            frame: sitting.frame,
-            rasterizer: sitting.rasterizer,
-            aspect,
-        }
+        let mut framebuffer = Framebuffer::new(width, height);
+        framebuffer.listen(sitting.listener.clone());
+        let target = Target::like(&framebuffer);
+        let Sitting { frame, rasterizer, listener, .. } = sitting.clone();
+        Self { target, frame, rasterizer, listener, aspect }
     }
 
     pub(super) fn into_picture(self) -> Framebuffer {
@@ -94,10 +95,23 @@ impl Canvas {
     ) {
         let viewport = Some(state.viewport.unwrap_or_else(|| self.viewport()));
         let state = RenderState { viewport, ..*state };
+        match self.listener.clone() {
+            None => self.draw_heard_by(mesh, shader, &state, &Silent),
+            Some(listener) => self.draw_heard_by(mesh, shader, &state, listener.as_ref()),
+        }
+    }
+
+    fn draw_heard_by<S: Shader<N>, P: Probe + ?Sized, const N: usize>(
+        &mut self,
+        mesh: &Mesh<S::Attributes>,
+        shader: &S,
+        state: &RenderState,
+        probe: &P,
+    ) {
         let target = &mut self.target;
         match self.rasterizer {
-            RasterizerChoice::Scanline => draw(mesh, shader, &state, &Scanline, target, &Silent),
-            RasterizerChoice::Edge => draw(mesh, shader, &state, &Exact::<f64>::new(), target, &Silent),
+            RasterizerChoice::Scanline => draw(mesh, shader, state, &Scanline, target, probe),
+            RasterizerChoice::Edge => draw(mesh, shader, state, &Exact::<f64>::new(), target, probe),
         }
     }
     // ANCHOR_END: draw

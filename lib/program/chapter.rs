@@ -4,6 +4,7 @@ use std::process::ExitCode;
 
 use super::{Canvas, Failure, RasterizerChoice, Subject, run};
 use crate::Framebuffer;
+use crate::probe::Listener;
 
 /// A chapter: the question it asks, and the pictures that answer it.
 #[derive(Debug)]
@@ -70,6 +71,8 @@ pub struct Sitting<'a> {
     pub rasterizer: RasterizerChoice,
     /// What it is a picture of, where it draws a model.
     pub subject: Option<&'a Subject>,
+    /// Who listens, if anybody does.
+    pub listener: Option<Listener>,
 }
 
 /// What draws a picture.
@@ -227,7 +230,8 @@ impl Variant {
     /// How it is drawn when nothing else is said: its own size and rasterizer, the first frame.
     #[must_use]
     pub fn sitting<'a>(&self, subject: Option<&'a Subject>) -> Sitting<'a> {
-        Sitting { size: self.size, frame: 0, rasterizer: self.rasterizer.unwrap_or_default(), subject }
+        let rasterizer = self.rasterizer.unwrap_or_default();
+        Sitting { size: self.size, frame: 0, rasterizer, subject, listener: None }
     }
 
     /// Draws the picture; without a subject, a variant that draws one stays black.

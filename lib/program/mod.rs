@@ -27,8 +27,12 @@ pub mod assets;
 mod canvas;
 mod chapter;
 mod failure;
+mod history;
+mod inspect;
 mod output;
 pub mod picture;
+mod record;
+mod rows;
 mod run;
 
 pub use canvas::{Canvas, RasterizerChoice, Subject};

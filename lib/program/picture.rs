@@ -68,6 +68,28 @@ fn blocks(picture: &Framebuffer, part: Rect, factor: u32) -> Framebuffer {
     result
 }
 
+/// Draws on a screen of its own, `width` × `height` pixels, and shows each of them as a block of factor × factor.
+///
+/// # Panics
+/// As [`Framebuffer::new`] does.
+pub fn draw_enlarged(
+    into: &mut Framebuffer,
+    (width, height): (u32, u32),
+    factor: u32,
+    draw: impl FnOnce(&mut Framebuffer),
+) {
+    let mut screen = Framebuffer::new(width, height);
+    let listener = into.listener();
+    screen.listen(listener.clone());
+    screen.tell(|probe| probe.enlarged(factor));
+    draw(&mut screen);
+    screen.tell(|probe| probe.enlarged(1));
+    // The blocks are no news to whoever listens.
+    into.listen(None);
+    paste(into, &enlarged(&screen, factor), 0, 0);
+    into.listen(listener);
+}
+
 /// Copies a picture into another one, its lower left corner to (left, bottom); what does not fit is left out.
 pub fn paste(into: &mut Framebuffer, picture: &Framebuffer, left: i32, bottom: i32) {
     for y in picture.rect().rows() {

@@ -2,18 +2,22 @@
 
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::Arc;
 
 use glam::DVec3;
 
 use super::Failure;
 use super::animation::{encode, progress_bar};
-use super::arguments::{Comparison, Request, list};
+use super::arguments::{Comparison, Format, Request, list};
 use super::canvas::{RasterizerChoice, Subject};
 use super::chapter::{Chapter, Mistake, Sitting, Variant};
+use super::history::History;
 use super::output::{Destination, note, say};
 use super::picture::{Zoom, difference, side_by_side, zoomed};
+use super::record::{Pixel, Recorder};
 use crate::files::{FileError, load_texture};
 use crate::model::{Model, NormalStyle};
+use crate::probe::Listener;
 use crate::texture::Texture;
 use crate::{Framebuffer, Rect};
 
@@ -54,6 +58,9 @@ fn run(chapter: &Chapter, request: &Request) -> Result<(), Failure> {
         Some(name) => find(chapter, name)?,
         None => chapter.lead(),
     };
+    if let Some(pixel) = request.inspect {
+        return inspect_pixel(chapter, variant, request, pixel);
+    }
     match &request.compare {
         None if request.animate => animate(variant, request, &destination),
         None => draw_one(variant, request, &destination),
@@ -108,8 +115,12 @@ impl<'a> Commission<'a> {
     }
 
     fn draw(&self, frame: u32) -> Framebuffer {
+        self.draw_heard_by(frame, None)
+    }
+
+    fn draw_heard_by(&self, frame: u32, listener: Option<Listener>) -> Framebuffer {
         let (size, rasterizer, subject) = (self.size, self.rasterizer, self.subject.as_ref());
-        self.variant.draw(&Sitting { size, frame, rasterizer, subject })
+        self.variant.draw(&Sitting { size, frame, rasterizer, subject, listener })
     }
 }
 
@@ -211,13 +222,15 @@ fn enlarged(picture: Framebuffer, zoom: Option<Zoom>) -> Framebuffer {
 }
 
 /// Whether the pixel around which to zoom is in the picture.
-fn check_zoom((width, height): (u32, u32), zoom: Option<Zoom>) -> Result<(), Failure> {
-    match zoom.and_then(|zoom| zoom.center) {
-        Some((x, y)) if !Rect::sized(width, height).contains(x, y) => Err(Failure::Usage(format!(
-            "the pixel {x},{y} is outside the picture of {width}×{height} pixels"
-        ))),
-        _ => Ok(()),
+fn check_zoom(size: (u32, u32), zoom: Option<Zoom>) -> Result<(), Failure> {
+    zoom.and_then(|zoom| zoom.center).map_or(Ok(()), |pixel| check_inside(size, pixel))
+}
+
+fn check_inside((width, height): (u32, u32), (x, y): Pixel) -> Result<(), Failure> {
+    if Rect::sized(width, height).contains(x, y) {
+        return Ok(());
     }
+    Err(Failure::Usage(format!("the pixel {x},{y} is outside the picture of {width}×{height} pixels")))
 }
 
 /// The file name of a picture, without extension.
@@ -245,6 +258,31 @@ fn animate(variant: &Variant, request: &Request, destination: &Destination) -> R
     let path =
         destination.write_animation(&name_of(variant, request), |format| encode(format, animation, draw))?;
     say(&path.display().to_string())
+}
+
+/// Tells the history of a pixel; nothing is written but text.
+fn inspect_pixel(
+    chapter: &Chapter,
+    variant: &Variant,
+    request: &Request,
+    pixel: Pixel,
+) -> Result<(), Failure> {
+    let frame = frame_of(variant, request)?;
+    let commission = Commission::new(variant, request, &Given::load(request, &[variant])?)?;
+    check_inside(commission.size, pixel)?;
+    let recorder = Arc::new(Recorder::new(Some(pixel)));
+    let picture = commission.draw_heard_by(frame, Some(recorder.clone()));
+    let history = History {
+        program: chapter.name,
+        variant: variant.name,
+        frame: request.frame,
+        ..History::of(&recorder.events(), &picture, pixel)
+    };
+    if request.format == Format::Json {
+        return say(&history.to_json());
+    }
+    let others = if request.verbose { history.others.clone() } else { Vec::new() };
+    say(&History { others, ..history }.to_string())
 }
 
 fn draw_comparison(

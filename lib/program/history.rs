@@ -1,0 +1,222 @@
+//! A history as data, as text for people, and as JSON for programs.
+
+use std::fmt::{self, Write as _};
+
+use crate::Color;
+
+/// Something that is told: one source for both forms.
+#[derive(Clone, Debug)]
+pub(super) enum Value {
+    Number(f64),
+    Whole(i64),
+    Yes(bool),
+    Text(String),
+    Color(Color),
+    Numbers(Vec<f64>),
+    /// Rows of numbers with a name each; a hole where a row has no number.
+    Table {
+        columns: Vec<String>,
+        rows: Vec<(String, Vec<Option<f64>>)>,
+    },
+    /// Told to programs alone: for people it stands in a table.
+    Group(Vec<Field>),
+    List(Vec<String>),
+}
+
+/// A value with its name for programs (`key`) and for people (`label`; without one it is for programs alone).
+#[derive(Clone, Debug)]
+pub(super) struct Field {
+    pub(super) key: &'static str,
+    pub(super) label: &'static str,
+    pub(super) value: Value,
+}
+
+/// A field that both are told.
+pub(super) const fn field(key: &'static str, label: &'static str, value: Value) -> Field {
+    Field { key, label, value }
+}
+
+/// A field for programs alone.
+pub(super) const fn hidden(key: &'static str, value: Value) -> Field {
+    Field { key, label: "", value }
+}
+
+/// One thing that happened.
+#[derive(Clone, Debug)]
+pub(super) struct Entry {
+    pub(super) kind: &'static str,
+    pub(super) title: String,
+    pub(super) fields: Vec<Field>,
+}
+
+/// All that happened at a pixel.
+#[derive(Clone, Debug)]
+pub(super) struct History {
+    pub(super) program: &'static str,
+    pub(super) variant: &'static str,
+    pub(super) frame: Option<u32>,
+    /// The pixel, y up.
+    pub(super) pixel: (i32, i32),
+    /// Its row in the image file, 0 on top.
+    pub(super) row: i32,
+    pub(super) entries: Vec<Entry>,
+    /// What did not touch the pixel, and why.
+    pub(super) others: Vec<Entry>,
+    /// The color that stands in the picture.
+    pub(super) color: Color,
+}
+
+/// A number, rounded for people: about five digits that count.
+fn rounded(number: f64) -> String {
+    let size = number.abs();
+    if number == 0.0 {
+        "0".to_owned()
+    } else if !number.is_finite() {
+        number.to_string()
+    } else if !(1e-4..1e7).contains(&size) {
+        format!("{number:.3e}")
+    } else {
+        let decimals = if size >= 1000.0 { 2 } else { 4 };
+        format!("{number:.decimals$}")
+    }
+}
+
+impl fmt::Display for History {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (x, y) = self.pixel;
+        let frame = self.frame.map_or_else(String::new, |frame| format!(", frame {frame}"));
+        writeln!(f, "{} {}{frame}", self.program, self.variant)?;
+        writeln!(f, "pixel ({x}, {y}), y up; row {} of the image file", self.row)?;
+        for entry in &self.entries {
+            write_entry(f, entry)?;
+        }
+        if !self.others.is_empty() {
+            writeln!(f, "\nWhat did not reach this pixel")?;
+        }
+        for entry in &self.others {
+            writeln!(f, "  {}", entry.title)?;
+        }
+        write!(f, "\nIn the picture: {:?}", self.color)
+    }
+}
+
+/// The width of the names at the left.
+const NAMES: usize = 14;
+
+fn write_entry(f: &mut fmt::Formatter<'_>, entry: &Entry) -> fmt::Result {
+    writeln!(f, "\n{}", entry.title)?;
+    for Field { label, value, .. } in entry.fields.iter().filter(|field| !field.label.is_empty()) {
+        let line = match value {
+            Value::Number(number) => rounded(*number),
+            Value::Whole(number) => number.to_string(),
+            Value::Yes(answer) => if *answer { "yes" } else { "no" }.to_owned(),
+            Value::Text(text) => text.clone(),
+            Value::Color(color) => format!("{color:?}"),
+            Value::Numbers(numbers) => numbers.iter().map(|n| rounded(*n)).collect::<Vec<_>>().join("  "),
+            Value::List(lines) => lines.join(&format!("\n  {:NAMES$}", "")),
+            Value::Group(_) => continue,
+            Value::Table { columns, rows } => {
+                write_table(f, label, columns, rows)?;
+                continue;
+            }
+        };
+        writeln!(f, "  {label:NAMES$}{line}")?;
+    }
+    Ok(())
+}
+
+fn write_table(
+    f: &mut fmt::Formatter<'_>,
+    label: &str,
+    columns: &[String],
+    rows: &[(String, Vec<Option<f64>>)],
+) -> fmt::Result {
+    let width = if columns.len() > 5 { 10 } else { 12 };
+    let line = |name: &str, cells: &mut dyn Iterator<Item = String>| {
+        let cells: String = cells.map(|cell| format!("{cell:>width$}")).collect();
+        format!("  {name:NAMES$}{cells}").trim_end().to_owned()
+    };
+    writeln!(f, "{}", line(label, &mut columns.iter().cloned()))?;
+    for (name, cells) in rows {
+        let mut cells = cells.iter().map(|cell| cell.map_or_else(String::new, rounded));
+        writeln!(f, "{}", line(&format!("  {name}"), &mut cells))?;
+    }
+    Ok(())
+}
+
+impl History {
+    /// The history as JSON: one object. Numbers have full precision; what is not finite is `null`.
+    pub(super) fn to_json(&self) -> String {
+        let mut json = String::new();
+        let entries = |entries: &[Entry]| entries.iter().map(entry_json).collect::<Vec<_>>().join(",\n    ");
+        let frame = self.frame.map_or_else(|| "null".to_owned(), |frame| frame.to_string());
+        let _ = write!(
+            json,
+            "{{\n  \"program\": {},\n  \"variant\": {},\n  \"frame\": {frame},\n  \"pixel\": [{}, {}],\n  \
+             \"row\": {},\n  \"events\": [\n    {}\n  ],\n  \"others\": [\n    {}\n  ],\n  \"color\": {}\n}}",
+            text_json(self.program),
+            text_json(self.variant),
+            self.pixel.0,
+            self.pixel.1,
+            self.row,
+            entries(&self.entries),
+            entries(&self.others),
+            value_json(&Value::Color(self.color)),
+        );
+        json
+    }
+}
+
+fn entry_json(entry: &Entry) -> String {
+    let mut fields = vec![
+        hidden("kind", Value::Text(entry.kind.to_owned())),
+        hidden("title", Value::Text(entry.title.clone())),
+    ];
+    fields.extend(entry.fields.iter().filter(|field| !field.key.is_empty()).cloned());
+    value_json(&Value::Group(fields))
+}
+
+fn value_json(value: &Value) -> String {
+    let list =
+        |items: &mut dyn Iterator<Item = String>| format!("[{}]", items.collect::<Vec<_>>().join(", "));
+    match value {
+        Value::Number(number) => number_json(*number),
+        Value::Whole(number) => number.to_string(),
+        Value::Yes(answer) => answer.to_string(),
+        Value::Text(text) => text_json(text),
+        Value::Color(color) => list(&mut color.channels().iter().map(u8::to_string)),
+        Value::Numbers(numbers) => list(&mut numbers.iter().map(|number| number_json(*number))),
+        Value::List(lines) => list(&mut lines.iter().map(|line| text_json(line))),
+        Value::Group(fields) => {
+            let field = |field: &Field| format!("{}: {}", text_json(field.key), value_json(&field.value));
+            format!("{{{}}}", fields.iter().map(field).collect::<Vec<_>>().join(", "))
+        }
+        Value::Table { columns, rows } => {
+            let cell = |(column, cell): (&String, &Option<f64>)| {
+                cell.map(|number| format!("{}: {}", text_json(column), number_json(number)))
+            };
+            let row = |(name, cells): &(String, Vec<Option<f64>>)| {
+                let cells: Vec<String> = columns.iter().zip(cells).filter_map(cell).collect();
+                format!("{}: {{{}}}", text_json(name), cells.join(", "))
+            };
+            format!("{{{}}}", rows.iter().map(row).collect::<Vec<_>>().join(", "))
+        }
+    }
+}
+
+fn number_json(number: f64) -> String {
+    if number.is_finite() { format!("{number:?}") } else { "null".to_owned() }
+}
+
+fn text_json(text: &str) -> String {
+    let mut json = String::from('"');
+    for character in text.chars() {
+        match character {
+            '"' | '\\' => json.extend(['\\', character]),
+            '\n' => json.push_str("\\n"),
+            _ => json.push(character),
+        }
+    }
+    json.push('"');
+    json
+}
