@@ -66,6 +66,10 @@ struct Textured {
 impl Shader<2> for Textured {
     type Attributes = Attributes;
 
+    fn position(&self, attributes: &Attributes) -> Option<DVec3> {
+        Some(attributes.position)
+    }
+
     fn vertex(&self, attributes: &Attributes) -> ClipVertex<2> {
         ClipVertex { position: self.view.project(attributes.position), varyings: attributes.uv }
     }

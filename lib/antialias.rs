@@ -105,7 +105,7 @@ impl<'a> Samples<'a> {
         if let Some(listener) = &self.listener {
             let passes = if depth <= stored { "drawn" } else { "hidden" };
             listener.note(x, y, &|| {
-                format!("sample {sample}: depth {depth:.4} against {stored:.4}, {color:?} is {passes}")
+                format!("sample {sample}: {depth:.4} against {stored:.4}, {color:?} {passes}")
             });
         }
         if depth <= stored {

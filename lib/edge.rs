@@ -239,6 +239,8 @@ impl Coverage {
         let announced = Announced::new(window, self);
         let steps = self.edges.map(|edge| edge.step_x * SUBPIXELS);
         area.rows().flat_map(move |y| {
+            // All of it, so that it lives as long as the rows do.
+            let announced = &announced;
             let coverage = announced.coverage;
             let mut values = coverage.edge_values(center(area.left, y));
             area.columns().filter_map(move |x| {

@@ -180,7 +180,68 @@ fn animations() {
 }
 
 #[test]
+fn the_history_of_a_pixel() {
+    let folder = folder("inspect");
+    let output = run_in(&folder, &["affine", "--inspect", "60,120"]);
+    assert!(output.status.success() && output.stderr.is_empty());
+    let told = text(&output.stdout);
+    assert!(told.contains("affine ←") && told.ends_with("In the picture: (0, 255, 0)\n"), "{told}");
+    assert!(!told.contains("What did not reach"), "only with -v");
+    let more = text(&run_in(&folder, &["affine", "--inspect", "60,120", "-v"]).stdout);
+    assert!(more.contains("triangle 2: row 120"), "{more}");
+    let output = run_in(&folder, &["affine", "--inspect", "60,120", "--format", "json"]);
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!((&json["variant"], &json["color"]), (&"affine".into(), &serde_json::json!([0, 255, 0])));
+    assert!(files(&folder).is_empty(), "nothing is written");
+}
+
+#[test]
+fn steps_and_overdraw() {
+    let folder = folder("steps");
+    let output = run_in(&folder, &["affine", "--steps", "--size", "100x100", "--out", "a.png"]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let png = std::io::BufReader::new(std::fs::File::open(folder.join("a.png")).expect("written"));
+    let frames = png::Decoder::new(png).read_info().expect("a PNG file").info().animation_control;
+    assert!(frames.is_some_and(|control| (100..300).contains(&control.num_frames)), "row by row: {frames:?}");
+
+    let output = run_in(&folder, &["affine", "--overdraw"]);
+    let legend = text(&output.stderr);
+    assert!(legend.starts_with("How often") && legend.contains("2: yellow (475 pixels)"), "{legend}");
+    assert!(folder.join("out/ch05_perspective_correct/affine-overdraw.png").is_file());
+}
+
+#[test]
+fn a_choice_of_rasterizers() {
+    let folder = folder("rasterizer");
+    let run = |arguments: &[&str]| {
+        let program = env!("CARGO_BIN_EXE_ch09_pipeline");
+        Command::new(program).args(arguments).current_dir(&folder).output().expect("the program starts")
+    };
+    for name in ["scanline", "edge"] {
+        let output = run(&["vbo", "--rasterizer", name, "--out", "x"]);
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        assert!(folder.join(format!("x/vbo-{name}.png")).is_file());
+    }
+    let output = run(&["vbo", "--rasterizer", "edges"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).contains("scanline, edge"));
+    // In the exact picture no pixel is written twice.
+    let seams = text(&run(&["indexed", "--overdraw", "--rasterizer", "scanline"]).stderr);
+    let none = text(&run(&["indexed", "--overdraw", "--rasterizer", "edge"]).stderr);
+    assert!(!seams.contains("2: yellow (0 pixels)") && !seams.is_empty(), "{seams}");
+    assert!(none.contains("3: orange (0 pixels)"), "{none}");
+}
+
+#[test]
 fn what_makes_no_sense_is_refused() {
+    refused("rasterizer_early", &["affine", "--rasterizer", "edge"], 2, "does not use the pipeline");
+    refused("inspect_outside", &["--inspect", "640,0"], 2, "outside the picture of 640×480");
+    refused("inspect_negative", &["--inspect", "-1,5"], 2, "outside");
+    refused("inspect_words", &["--inspect", "here"], 2, "expected X,Y");
+    refused("inspect_all", &["--all", "--inspect", "1,1"], 2, "--inspect");
+    refused("format_alone", &["--format", "json"], 2, "--inspect");
+    refused("steps_and_overdraw", &["--steps", "--overdraw"], 2, "--overdraw");
+    refused("steps_bmp", &["--steps", "--out", "a.bmp"], 2, ".gif or a .png");
     refused("variant", &["afine"], 2, "no variant 'afine'; it has: correct, affine");
     refused("option", &["--sise", "4x4"], 2, "--sise");
     refused("two", &["affine", "correct"], 2, "correct");

@@ -1,6 +1,6 @@
 //! The book's last program: a textured model under a light, and its last exercise, the spike bug.
 
-use glam::{DMat4, dvec3};
+use glam::{DMat4, DVec3, dvec3};
 use rasterbook::clip::ClipVertex;
 use rasterbook::cull::CullMode;
 use rasterbook::light::lambert;
@@ -32,6 +32,10 @@ struct Lit {
 
 impl Shader<5> for Lit {
     type Attributes = ModelVertex;
+
+    fn position(&self, vertex: &ModelVertex) -> Option<DVec3> {
+        Some(vertex.position)
+    }
 
     fn vertex(&self, vertex: &ModelVertex) -> ClipVertex<5> {
         // A normal is a direction: with ω = 0 it turns and does not move.

@@ -85,6 +85,10 @@ impl Ball {
 impl Shader<6> for Ball {
     type Attributes = Corner;
 
+    fn position(&self, corner: &Corner) -> Option<DVec3> {
+        Some(corner.position)
+    }
+
     fn vertex(&self, corner: &Corner) -> ClipVertex<6> {
         let view = self.view_from_model * corner.position.extend(1.0);
         let normal = self.normals * corner.normal;

@@ -43,6 +43,10 @@ impl Shader<2> for Floor {
     type Attributes = ([f64; 2], [f64; 2]);
     const USES_DERIVATIVES: bool = true;
 
+    fn position(&self, &([x, z], _): &Self::Attributes) -> Option<DVec3> {
+        Some(dvec3(x, 0.0, z))
+    }
+
     fn vertex(&self, &([x, z], uv): &Self::Attributes) -> ClipVertex<2> {
         ClipVertex { position: self.clip_from_world * dvec3(x, 0.0, z).extend(1.0), varyings: uv }
     }

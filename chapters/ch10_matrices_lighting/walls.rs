@@ -48,6 +48,10 @@ impl Shader<5> for Wall {
     /// x and y of the wall, which are its texture coordinates too.
     type Attributes = [f64; 2];
 
+    fn position(&self, &[x, y]: &[f64; 2]) -> Option<DVec3> {
+        Some(dvec3(x, y, 0.0))
+    }
+
     fn vertex(&self, &[x, y]: &[f64; 2]) -> ClipVertex<5> {
         let view = (self.view_from_model * dvec3(x, y, 0.0).extend(1.0)).truncate();
         ClipVertex { position: CAMERA.matrix() * view.extend(1.0), varyings: [view.x, view.y, view.z, x, y] }

@@ -34,6 +34,8 @@ pub(super) struct Request {
     pub(super) inspect: Option<(i32, i32)>,
     pub(super) format: Format,
     pub(super) verbose: bool,
+    pub(super) steps: bool,
+    pub(super) overdraw: bool,
 }
 
 /// The form of a history.
@@ -80,6 +82,8 @@ impl Request {
             inspect: matches.get_one("inspect").copied(),
             format: if text("format").as_deref() == Some("json") { Format::Json } else { Format::Text },
             verbose: matches.get_flag("verbose"),
+            steps: matches.get_flag("steps"),
+            overdraw: matches.get_flag("overdraw"),
         })
     }
 }
@@ -142,7 +146,7 @@ fn subject(chapter: &Chapter) -> [Arg; 4] {
 }
 
 /// How a picture came about.
-fn what_to_tell() -> [Arg; 3] {
+fn what_to_tell() -> [Arg; 5] {
     let inspect = "Tell all that happened at the pixel (X, Y), y up from the bottom; no picture is written";
     [
         option("inspect", "X,Y", inspect)
@@ -155,6 +159,13 @@ fn what_to_tell() -> [Arg; 3] {
         switch("verbose", "Tell also what came near the pixel and did not reach it")
             .short('v')
             .requires("inspect"),
+        switch("steps", "Draw an animation of how the picture comes about, step by step")
+            .conflicts_with_all(["all", "animate", "compare", "inspect"]),
+        switch(
+            "overdraw",
+            "Draw how often each pixel is written; what the colors mean goes to standard error",
+        )
+        .conflicts_with_all(["all", "animate", "compare", "inspect", "steps"]),
     ]
 }
 

@@ -49,9 +49,9 @@ pub(super) struct Entry {
     pub(super) fields: Vec<Field>,
 }
 
-/// All that happened at a pixel.
+/// All that happened at a pixel. As text it is for people: 80 columns, rounded numbers.
 #[derive(Clone, Debug)]
-pub(super) struct History {
+pub struct History {
     pub(super) program: &'static str,
     pub(super) variant: &'static str,
     pub(super) frame: Option<u32>,
@@ -64,6 +64,8 @@ pub(super) struct History {
     pub(super) others: Vec<Entry>,
     /// The color that stands in the picture.
     pub(super) color: Color,
+    /// The color that the last of the entries has left.
+    pub(super) told: Color,
 }
 
 /// A number, rounded for people: about five digits that count.
@@ -76,9 +78,20 @@ fn rounded(number: f64) -> String {
     } else if !(1e-4..1e7).contains(&size) {
         format!("{number:.3e}")
     } else {
+        // 101.9999999999995 is cut to 101, and must not look like 102.
+        let below = number.round() - number;
+        if below > 0.0 && below < 1e-9 * size && size >= 1.0 {
+            return format!("{}-{below:.0e}", number.round());
+        }
         let decimals = if size >= 1000.0 { 2 } else { 4 };
         format!("{number:.decimals$}")
     }
+}
+
+/// A number in a cell of a table: with fewer digits where they find no room.
+fn fitting(number: f64, width: usize) -> String {
+    let text = rounded(number);
+    if text.len() < width { text } else { format!("{number:.1}") }
 }
 
 impl fmt::Display for History {
@@ -94,33 +107,57 @@ impl fmt::Display for History {
             writeln!(f, "\nWhat did not reach this pixel")?;
         }
         for entry in &self.others {
-            writeln!(f, "  {}", entry.title)?;
+            write_wrapped(f, "  ", 4, &entry.title)?;
         }
         write!(f, "\nIn the picture: {:?}", self.color)
     }
 }
 
+/// A paragraph of at most 80 columns, which begins with `first`; its other lines are indented by `indent`.
+fn write_wrapped(f: &mut fmt::Formatter<'_>, first: &str, indent: usize, text: &str) -> fmt::Result {
+    let mut line = first.to_owned();
+    for (i, word) in text.split(' ').enumerate() {
+        if line.chars().count() + 1 + word.chars().count() > 80 {
+            writeln!(f, "{}", line.trim_end())?;
+            line = " ".repeat(indent);
+        } else if i > 0 {
+            line += " ";
+        }
+        line += word;
+    }
+    writeln!(f, "{line}")
+}
+
+/// Marks the row of a table that went into the picture.
+pub(super) const USED: &str = " ←";
+
 /// The width of the names at the left.
-const NAMES: usize = 14;
+const NAMES: usize = 16;
 
 fn write_entry(f: &mut fmt::Formatter<'_>, entry: &Entry) -> fmt::Result {
-    writeln!(f, "\n{}", entry.title)?;
+    writeln!(f)?;
+    write_wrapped(f, "  ", 4, &entry.title)?;
     for Field { label, value, .. } in entry.fields.iter().filter(|field| !field.label.is_empty()) {
-        let line = match value {
-            Value::Number(number) => rounded(*number),
-            Value::Whole(number) => number.to_string(),
-            Value::Yes(answer) => if *answer { "yes" } else { "no" }.to_owned(),
-            Value::Text(text) => text.clone(),
-            Value::Color(color) => format!("{color:?}"),
-            Value::Numbers(numbers) => numbers.iter().map(|n| rounded(*n)).collect::<Vec<_>>().join("  "),
-            Value::List(lines) => lines.join(&format!("\n  {:NAMES$}", "")),
+        let lines = match value {
+            Value::Number(number) => vec![rounded(*number)],
+            Value::Whole(number) => vec![number.to_string()],
+            Value::Yes(answer) => vec![if *answer { "yes" } else { "no" }.to_owned()],
+            Value::Text(text) => vec![text.clone()],
+            Value::Color(color) => vec![format!("{color:?}")],
+            Value::Numbers(numbers) => {
+                vec![numbers.iter().map(|number| rounded(*number)).collect::<Vec<_>>().join("  ")]
+            }
+            Value::List(lines) => lines.clone(),
             Value::Group(_) => continue,
             Value::Table { columns, rows } => {
                 write_table(f, label, columns, rows)?;
                 continue;
             }
         };
-        writeln!(f, "  {label:NAMES$}{line}")?;
+        for (i, line) in lines.iter().enumerate() {
+            let label = if i == 0 { label } else { "" };
+            write_wrapped(f, &format!("    {label:NAMES$}"), NAMES + 4, line)?;
+        }
     }
     Ok(())
 }
@@ -131,22 +168,37 @@ fn write_table(
     columns: &[String],
     rows: &[(String, Vec<Option<f64>>)],
 ) -> fmt::Result {
-    let width = if columns.len() > 5 { 10 } else { 12 };
+    let width = (60 / columns.len().max(1)).min(12);
     let line = |name: &str, cells: &mut dyn Iterator<Item = String>| {
         let cells: String = cells.map(|cell| format!("{cell:>width$}")).collect();
-        format!("  {name:NAMES$}{cells}").trim_end().to_owned()
+        format!("    {name:NAMES$}{cells}").trim_end().to_owned()
     };
     writeln!(f, "{}", line(label, &mut columns.iter().cloned()))?;
     for (name, cells) in rows {
-        let mut cells = cells.iter().map(|cell| cell.map_or_else(String::new, rounded));
+        let mut cells =
+            cells.iter().map(|cell| cell.map_or_else(String::new, |number| fitting(number, width)));
         writeln!(f, "{}", line(&format!("  {name}"), &mut cells))?;
     }
     Ok(())
 }
 
 impl History {
+    /// The color that stands in the picture.
+    #[must_use]
+    pub const fn color(&self) -> Color {
+        self.color
+    }
+
+    /// The color that the last of what is told has left. It is that of the picture, unless the program has shown another
+    /// buffer afterwards, or drawn a line between enlarged pixels.
+    #[must_use]
+    pub const fn told(&self) -> Color {
+        self.told
+    }
+
     /// The history as JSON: one object. Numbers have full precision; what is not finite is `null`.
-    pub(super) fn to_json(&self) -> String {
+    #[must_use]
+    pub fn to_json(&self) -> String {
         let mut json = String::new();
         let entries = |entries: &[Entry]| entries.iter().map(entry_json).collect::<Vec<_>>().join(",\n    ");
         let frame = self.frame.map_or_else(|| "null".to_owned(), |frame| frame.to_string());
@@ -197,7 +249,8 @@ fn value_json(value: &Value) -> String {
             };
             let row = |(name, cells): &(String, Vec<Option<f64>>)| {
                 let cells: Vec<String> = columns.iter().zip(cells).filter_map(cell).collect();
-                format!("{}: {{{}}}", text_json(name), cells.join(", "))
+                // Which row was used is told by a field of its own.
+                format!("{}: {{{}}}", text_json(name.trim_end_matches(USED)), cells.join(", "))
             };
             format!("{{{}}}", rows.iter().map(row).collect::<Vec<_>>().join(", "))
         }

@@ -3,8 +3,11 @@
 //! Nothing here draws. Of a primitive that reached the pixel, the stage is gone through once more with the same library
 //! functions, to find the numbers that it passed on the way.
 
+use std::sync::Arc;
+
+use super::chapter::{Sitting, Variant};
 use super::history::{Entry, Field, History, Value, field};
-use super::record::{ClipTriangle, Event, Fragment, Pixel, Point, Primitive, within};
+use super::record::{ClipTriangle, Event, Fragment, Pixel, Point, Primitive, Recorder, within};
 use super::rows::{line_at, rows_at};
 use crate::area::{Winding, twice_signed_area};
 use crate::clip::{ClipTest, ClipVertex, Plane, clip_polygon};
@@ -23,6 +26,37 @@ struct Findings {
     color: Color,
 }
 
+/// The history of a pixel of a variant's picture.
+#[must_use]
+pub fn history(
+    program: &'static str,
+    variant: &Variant,
+    sitting: &Sitting<'_>,
+    pixel: (i32, i32),
+) -> History {
+    let recorder = Arc::new(Recorder::new(Some(pixel)));
+    let sitting = Sitting { listener: Some(recorder.clone()), ..sitting.clone() };
+    let picture = variant.draw(&sitting);
+    let frame = variant.animation.map(|_| sitting.frame);
+    History { program, variant: variant.name, frame, ..History::of(&recorder.events(), &picture, pixel) }
+}
+
+/// The histories of several pixels; the picture is drawn once.
+pub fn histories(
+    program: &'static str,
+    variant: &Variant,
+    sitting: &Sitting<'_>,
+    pixels: impl IntoIterator<Item = (i32, i32)>,
+) -> Vec<History> {
+    let recorder = Arc::new(Recorder::new(None));
+    let sitting = Sitting { listener: Some(recorder.clone()), ..sitting.clone() };
+    let picture = variant.draw(&sitting);
+    let (events, frame) = (recorder.events(), variant.animation.map(|_| sitting.frame));
+    let history =
+        |pixel| History { program, variant: variant.name, frame, ..History::of(&events, &picture, pixel) };
+    pixels.into_iter().map(history).collect()
+}
+
 impl History {
     /// What happened at a pixel on the way to a picture, from what was heard.
     pub(super) fn of(events: &[Event], picture: &Framebuffer, pixel: Pixel) -> Self {
@@ -39,7 +73,7 @@ impl History {
             entries.push(Entry { kind: "replaced", title, fields: Vec::new() });
         }
         let row = picture.height() as i32 - 1 - pixel.1;
-        Self { program: "", variant: "", frame: None, pixel, row, entries, others, color }
+        Self { program: "", variant: "", frame: None, pixel, row, entries, others, color, told }
     }
 }
 
@@ -57,12 +91,27 @@ fn explain(events: &[Event], pixel: Pixel, picture: Rect) -> Findings {
         is_open: false,
         hits: 0,
         is_hit_complete: true,
+        culled: Vec::new(),
+        clipped_away: Vec::new(),
         found: Findings::default(),
     };
     for event in events {
         teller.hear(event);
     }
+    teller.end_triangle();
+    let left_out: Vec<Entry> = teller.left_out().collect();
+    teller.found.others.extend(left_out);
     teller.found
+}
+
+/// Numbers in rising order as text: 1–3, 7, 9–12.
+fn ranges(numbers: &[usize]) -> String {
+    let runs = numbers.chunk_by(|a, b| a + 1 == *b).map(|run| match run {
+        [first, .., last] => format!("{first}–{last}"),
+        [single] => single.to_string(),
+        [] => String::new(),
+    });
+    runs.collect::<Vec<_>>().join(", ")
 }
 
 /// Where we are in the events.
@@ -80,6 +129,9 @@ struct Teller<'a> {
     is_open: bool,
     hits: usize,
     is_hit_complete: bool,
+    /// Numbers of triangles that never reached the screen.
+    culled: Vec<usize>,
+    clipped_away: Vec<usize>,
     found: Findings,
 }
 
@@ -89,6 +141,7 @@ impl<'a> Teller<'a> {
             Event::Enlarged(factor) => self.enlarge(*factor),
             Event::Cleared(color) => self.clear(*color),
             Event::Assembled(triangle) => {
+                self.end_triangle();
                 self.number += 1;
                 (self.assembled, self.piece, self.pieces) = (Some(triangle), None, 0);
             }
@@ -96,7 +149,9 @@ impl<'a> Teller<'a> {
                 self.pieces += 1;
                 self.piece = Some((vertices, *area));
             }
-            Event::Culled => self.culled(),
+            Event::Culled => {
+                self.culled.push(self.number);
+            }
             Event::Begun(primitive) => {
                 if self.assembled.is_none() {
                     self.number += 1;
@@ -108,8 +163,10 @@ impl<'a> Teller<'a> {
                 }
             }
             Event::Done => self.done(),
-            Event::Noted(text) => self.add([field("note", "note", Value::Text(text.clone()))]),
-            Event::Tested { depth, stored, passed } => {
+            Event::Noted(at, text) if *at == self.here() => {
+                self.add([field("note", "note", Value::Text(text.clone()))]);
+            }
+            Event::Tested { at, depth, stored, passed } if *at == self.here() => {
                 self.begin_hit();
                 self.add([
                     field("depth", "depth", Value::Number(*depth)),
@@ -118,17 +175,18 @@ impl<'a> Teller<'a> {
                 ]);
                 self.is_hit_complete = !passed && self.piece.is_none();
             }
-            Event::Written(_, color) => {
+            Event::Written(at, color) if *at == self.here() => {
                 self.begin_hit();
                 self.found.color = *color;
                 self.add([field("written", "written", Value::Color(*color))]);
                 self.is_hit_complete = self.piece.is_none();
             }
-            Event::Fragment(fragment) => {
+            Event::Fragment(at, fragment) if *at == self.here() => {
                 self.begin_hit();
                 self.add(fragment_fields(fragment));
                 self.is_hit_complete = true;
             }
+            Event::Noted(..) | Event::Tested { .. } | Event::Written(..) | Event::Fragment(..) => {}
         }
     }
 
@@ -147,6 +205,7 @@ impl<'a> Teller<'a> {
         self.found.color = color;
         let title = format!("The picture is cleared to {color:?}");
         self.found.entries.push(Entry { kind: "cleared", title, fields: Vec::new() });
+        self.end_triangle();
         // What was drawn before is gone, but not forgotten: triangles are counted anew.
         (self.number, self.assembled, self.piece) = (0, None, None);
     }
@@ -184,6 +243,13 @@ impl<'a> Teller<'a> {
         }
         let hit = self.hits;
         self.hits += 1;
+        if hit > 0 && self.primitive.is_some() {
+            self.add([field(
+                "",
+                "again",
+                Value::Text("the pixel belongs to both halves of the triangle".to_owned()),
+            )]);
+        }
         let (here, screen) = (self.here(), self.screen());
         let fields = match self.primitive {
             None => Vec::new(),
@@ -224,9 +290,29 @@ impl<'a> Teller<'a> {
         Entry { kind, title, fields }
     }
 
-    fn culled(&mut self) {
-        let title = format!("triangle {}: culled, seen from behind or without area", self.number);
-        self.found.others.push(Entry { kind: "culled", title, fields: Vec::new() });
+    /// The next triangle is assembled, or there is none: has anything been left of this one?
+    fn end_triangle(&mut self) {
+        if self.assembled.is_some() && self.pieces == 0 {
+            self.clipped_away.push(self.number);
+        }
+    }
+
+    /// What was left out on the way, by numbers.
+    fn left_out(&self) -> impl Iterator<Item = Entry> {
+        let all = [
+            ("culled", "culled, seen from behind or without area", &self.culled),
+            ("clipped", "clipped away", &self.clipped_away),
+        ];
+        let entry = |(kind, why, numbers): (&'static str, &str, &Vec<usize>)| {
+            let title = format!("{why}: {} triangles, {}", numbers.len(), ranges(numbers));
+            let list = numbers.iter().map(|&number| number as f64).collect();
+            (!numbers.is_empty()).then(|| Entry {
+                kind,
+                title,
+                fields: vec![field("numbers", "", Value::Numbers(list))],
+            })
+        };
+        all.map(entry).into_iter().flatten()
     }
 
     fn done(&mut self) {
@@ -407,7 +493,11 @@ fn fragment_fields(fragment: &Fragment) -> Vec<Field> {
     let [red, green, blue, opacity] = fragment.color;
     let mut fields = vec![
         field("w", "ω", Value::Number(fragment.w)),
-        field("varyings", "varyings", Value::Numbers(fragment.values.clone())),
+        field(
+            "varyings",
+            if fragment.values.is_empty() { "" } else { "varyings" },
+            Value::Numbers(fragment.values.clone()),
+        ),
         field("fragment_depth", "", Value::Number(fragment.depth)),
         field("shaded", "shader's color", Value::Numbers(vec![red, green, blue])),
     ];

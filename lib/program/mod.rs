@@ -34,7 +34,10 @@ pub mod picture;
 mod record;
 mod rows;
 mod run;
+mod steps;
 
 pub use canvas::{Canvas, RasterizerChoice, Subject};
 pub use chapter::{Animation, Chapter, Mistake, Sitting, Variant};
 pub use failure::Failure;
+pub use history::History;
+pub use inspect::{histories, history};

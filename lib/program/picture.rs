@@ -51,18 +51,27 @@ pub fn zoomed(picture: &Framebuffer, zoom: Zoom) -> Framebuffer {
     blocks(picture, zoom.part(picture.rect()), zoom.factor)
 }
 
+/// The block that shows a pixel of an enlarged screen; from a certain size on a line is left free beside it.
+pub(super) const fn block((x, y): (i32, i32), factor: u32) -> Rect {
+    let line = if factor >= Zoom::GRID_FROM { 1 } else { 0 };
+    let factor = factor as i32;
+    Rect {
+        left: x * factor,
+        bottom: y * factor,
+        right: (x + 1) * factor - line,
+        top: (y + 1) * factor - line,
+    }
+}
+
 /// A part of a picture, each pixel as a block, with a thin grid if the blocks are large enough.
 fn blocks(picture: &Framebuffer, part: Rect, factor: u32) -> Framebuffer {
-    let block = factor as i32;
-    let line = i32::from(factor >= Zoom::GRID_FROM);
     let mut result =
         Framebuffer::new(part.columns().len() as u32 * factor, part.rows().len() as u32 * factor);
     result.clear(GRID);
     for y in part.rows() {
         for x in part.columns() {
-            let (left, bottom) = ((x - part.left) * block, (y - part.bottom) * block);
-            let square = Rect { left, bottom, right: left + block - line, top: bottom + block - line };
-            result.fill(square, picture.get(x, y).unwrap_or_default());
+            result
+                .fill(block((x - part.left, y - part.bottom), factor), picture.get(x, y).unwrap_or_default());
         }
     }
     result

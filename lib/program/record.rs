@@ -78,22 +78,17 @@ pub(super) struct Fragment {
 /// Something that was heard.
 #[derive(Clone, Debug)]
 pub(super) enum Event {
-    #[allow(dead_code, reason = "the pixel is for --steps and --overdraw")]
     Written(Pixel, Color),
     Cleared(Color),
-    Tested {
-        depth: f64,
-        stored: f64,
-        passed: bool,
-    },
+    Tested { at: Pixel, depth: f64, stored: f64, passed: bool },
     Enlarged(u32),
     Begun(Primitive),
-    Noted(String),
+    Noted(Pixel, String),
     Done,
     Assembled(ClipTriangle),
     Piece([Point; 3], f64),
     Culled,
-    Fragment(Fragment),
+    Fragment(Pixel, Fragment),
 }
 
 /// A listener that keeps what it hears.
@@ -155,7 +150,7 @@ impl Probe for Recorder {
     }
 
     fn tested(&self, x: i32, y: i32, depth: f64, stored: f64, passed: bool) {
-        self.keep_at((x, y), || Event::Tested { depth, stored, passed });
+        self.keep_at((x, y), || Event::Tested { at: (x, y), depth, stored, passed });
     }
 
     fn enlarged(&self, factor: u32) {
@@ -184,7 +179,7 @@ impl Probe for Recorder {
     }
 
     fn note(&self, x: i32, y: i32, text: &dyn Fn() -> String) {
-        self.keep_at((x, y), || Event::Noted(text()));
+        self.keep_at((x, y), || Event::Noted((x, y), text()));
     }
 
     fn done(&self) {
@@ -211,7 +206,10 @@ impl Probe for Recorder {
     fn fragment(&self, event: &FragmentEvent<'_>) {
         self.keep_at((event.x, event.y), || {
             let FragmentEvent { w, depth, varyings, color, verdict, .. } = *event;
-            Event::Fragment(Fragment { w, depth, values: varyings.to_vec(), color, verdict })
+            Event::Fragment(
+                (event.x, event.y),
+                Fragment { w, depth, values: varyings.to_vec(), color, verdict },
+            )
         });
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::history::{Field, Value, field};
+use super::history::{Field, USED, Value, field};
 use super::inspect::{table, value_names};
 use super::record::{FilledTriangle, Pixel, Primitive};
 use crate::Rect;
@@ -192,7 +192,7 @@ fn triangle_hits(triangle: &FilledTriangle, pixel: Pixel, window: Rect) -> Vec<V
     let fields = |(i, hit): (usize, &Hit)| {
         let mut fields = screen_fields(triangle, hit, pixel);
         if triangle.w.is_some() {
-            fields.push(parameters(triangle, hit));
+            fields.extend(parameters(triangle, hit));
             fields.push(projected_values(triangle, hit));
             let limit = if triangle.walk.limit == StepLimit::Everywhere {
                 StepLimit::Everywhere
@@ -257,14 +257,22 @@ fn corner_name(triangle: &FilledTriangle, position: DVec2) -> &'static str {
     known.map_or("P′", |i| ["A", "B", "C"][i])
 }
 
-fn parameters(triangle: &FilledTriangle, hit: &Hit) -> Field {
-    let name = match triangle.interpolation {
-        Interpolation::Affine => "evenly on the screen",
-        Interpolation::PerspectiveCorrect => "by ω",
-        Interpolation::Reciprocal => "by 1/ω and V/ω",
+/// t on both edges and t′ along the row, and what is made of them.
+fn parameters(triangle: &FilledTriangle, hit: &Hit) -> [Field; 3] {
+    let (name, formula) = match triangle.interpolation {
+        Interpolation::Affine => ("affine", "V = Va + (Vb − Va) t′"),
+        Interpolation::PerspectiveCorrect => {
+            ("perspective-correct", "V_p = (ωb Va + (ωa Vb − ωb Va) t′) / (ωb + (ωa − ωb) t′)")
+        }
+        Interpolation::Reciprocal => ("reciprocal", "1/ω and V/ω evenly, V_p their quotient"),
     };
-    let rows = vec![(name.to_owned(), vec![Some(hit.edges[0]), Some(hit.edges[1]), Some(hit.along)])];
-    field("t", "t′", Value::Table { columns: ["left", "right", "along"].map(str::to_owned).to_vec(), rows })
+    let rows = vec![("here".to_owned(), vec![Some(hit.edges[0]), Some(hit.edges[1]), Some(hit.along)])];
+    let columns = ["left edge", "right edge", "along row"].map(str::to_owned).to_vec();
+    [
+        field("t", "t′", Value::Table { columns, rows }),
+        field("interpolation", "", Value::Text(name.to_owned())),
+        field("", "formula", Value::Text(format!("{formula}; a, b: ends of the row"))),
+    ]
 }
 
 /// ω and all values: at the corners, at both ends of the row, and at the pixel in both ways.
@@ -296,7 +304,7 @@ fn projected_values(triangle: &FilledTriangle, hit: &Hit) -> Field {
     let used = triangle.interpolation;
     rows.push(("row, left".to_owned(), all(used, 0)));
     rows.push(("row, right".to_owned(), all(used, 1)));
-    let mark = |name: &str, is_used: bool| if is_used { format!("{name} (used)") } else { name.to_owned() };
+    let mark = |name: &str, is_used: bool| if is_used { format!("{name}{USED}") } else { name.to_owned() };
     rows.push((mark("affine", used == Interpolation::Affine), all(Interpolation::Affine, 2)));
     rows.push((mark("V_p", used != Interpolation::Affine), all(right_way, 2)));
     let mut columns = vec!["ω".to_owned()];

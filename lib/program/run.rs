@@ -12,9 +12,11 @@ use super::arguments::{Comparison, Format, Request, list};
 use super::canvas::{RasterizerChoice, Subject};
 use super::chapter::{Chapter, Mistake, Sitting, Variant};
 use super::history::History;
+use super::inspect::history;
 use super::output::{Destination, note, say};
 use super::picture::{Zoom, difference, side_by_side, zoomed};
 use super::record::{Pixel, Recorder};
+use super::steps::Steps;
 use crate::files::{FileError, load_texture};
 use crate::model::{Model, NormalStyle};
 use crate::probe::Listener;
@@ -60,6 +62,9 @@ fn run(chapter: &Chapter, request: &Request) -> Result<(), Failure> {
     };
     if let Some(pixel) = request.inspect {
         return inspect_pixel(chapter, variant, request, pixel);
+    }
+    if request.steps || request.overdraw {
+        return draw_recorded(variant, request, &destination);
     }
     match &request.compare {
         None if request.animate => animate(variant, request, &destination),
@@ -119,8 +124,12 @@ impl<'a> Commission<'a> {
     }
 
     fn draw_heard_by(&self, frame: u32, listener: Option<Listener>) -> Framebuffer {
+        self.variant.draw(&Sitting { listener, ..self.sitting(frame) })
+    }
+
+    fn sitting(&self, frame: u32) -> Sitting<'_> {
         let (size, rasterizer, subject) = (self.size, self.rasterizer, self.subject.as_ref());
-        self.variant.draw(&Sitting { size, frame, rasterizer, subject, listener })
+        Sitting { size, frame, rasterizer, subject, listener: None }
     }
 }
 
@@ -270,19 +279,32 @@ fn inspect_pixel(
     let frame = frame_of(variant, request)?;
     let commission = Commission::new(variant, request, &Given::load(request, &[variant])?)?;
     check_inside(commission.size, pixel)?;
-    let recorder = Arc::new(Recorder::new(Some(pixel)));
-    let picture = commission.draw_heard_by(frame, Some(recorder.clone()));
-    let history = History {
-        program: chapter.name,
-        variant: variant.name,
-        frame: request.frame,
-        ..History::of(&recorder.events(), &picture, pixel)
-    };
+    let history = history(chapter.name, variant, &commission.sitting(frame), pixel);
     if request.format == Format::Json {
         return say(&history.to_json());
     }
     let others = if request.verbose { history.others.clone() } else { Vec::new() };
     say(&History { others, ..history }.to_string())
+}
+
+/// Draws how a picture came about: step by step, or how often each pixel was written.
+fn draw_recorded(variant: &Variant, request: &Request, destination: &Destination) -> Result<(), Failure> {
+    let frame = frame_of(variant, request)?;
+    let commission = Commission::new(variant, request, &Given::load(request, &[variant])?)?;
+    let recorder = Arc::new(Recorder::new(None));
+    let picture = commission.draw_heard_by(frame, Some(recorder.clone()));
+    let steps = Steps::new(&recorder.events(), picture);
+    let path = if request.steps {
+        let draw = |number| enlarged(steps.frame(number), request.zoom);
+        let name = format!("{}-steps", name_of(variant, request));
+        destination.write_animation(&name, |format| encode(format, steps.animation(), draw))?
+    } else {
+        let (heat, legend) = steps.overdraw();
+        note(&legend.join("\n"));
+        let name = format!("{}-overdraw", name_of(variant, request));
+        destination.write(&name, &enlarged(heat, request.zoom))?
+    };
+    say(&path.display().to_string())
 }
 
 fn draw_comparison(

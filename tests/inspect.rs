@@ -1,0 +1,160 @@
+//! The histories of pixels: what is told is what stands in the picture, and its numbers are those of the formulas.
+
+#[path = "support/chapters.rs"]
+mod chapters;
+
+use chapters::{CHAPTERS, variant};
+use rasterbook::program::{History, RasterizerChoice, Sitting, Variant, histories, history};
+use rayon::prelude::*;
+use serde_json::Value;
+
+/// Variants that show another buffer at the end than the one that was drawn into last.
+const OTHER_BUFFER: &[&str] = &["presented", "double-buffer"];
+
+fn of(chapter: &'static str, variant: &Variant, pixel: (i32, i32)) -> History {
+    let subject = variant.subject().expect("assets");
+    history(chapter, variant, &variant.sitting(subject.as_ref()), pixel)
+}
+
+/// Pixels all over a picture: a grid of odd steps, the corners, and the middle of each side.
+fn pixels((width, height): (u32, u32)) -> Vec<(i32, i32)> {
+    let (right, top) = (width as i32 - 1, height as i32 - 1);
+    let mut pixels = vec![(0, 0), (right, 0), (0, top), (right, top), (right / 2, 0), (0, top / 2), (100, 0)];
+    for row in 0..4 {
+        for column in 0..4 {
+            pixels.push((right * (2 * column + 1) / 8, top * (2 * row + 1) / 8));
+        }
+    }
+    pixels
+}
+
+#[test]
+fn what_is_told_is_what_stands_in_the_picture() {
+    let rows: Vec<(&str, &Variant)> = CHAPTERS
+        .iter()
+        .flat_map(|(chapter, _)| chapter.variants.iter().map(|variant| (chapter.name, variant)))
+        .collect();
+    rows.par_iter().for_each(|&(chapter, variant)| {
+        let subject = variant.subject().expect("assets");
+        let own = variant.sitting(subject.as_ref());
+        let choices = variant.rasterizer.map_or(vec![own.rasterizer], |_| RasterizerChoice::ALL.to_vec());
+        for rasterizer in choices {
+            let sitting = Sitting { rasterizer, ..own.clone() };
+            for history in histories(chapter, variant, &sitting, pixels(variant.size)) {
+                check(&history, variant);
+            }
+        }
+    });
+}
+
+fn check(history: &History, variant: &Variant) {
+    let text = history.to_string();
+    let json: Value = serde_json::from_str(&history.to_json()).expect("JSON");
+    let events = json["events"].as_array().expect("a list");
+    // A line between enlarged pixels belongs to none of them.
+    let is_enlarged = events.iter().any(|event| event["kind"] == "enlarged");
+    if !is_enlarged && !OTHER_BUFFER.contains(&variant.name) {
+        assert_eq!(history.told(), history.color(), "{text}");
+    }
+    assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
+    assert!(!events.is_empty(), "{text}");
+    // Something covers a pixel, or it is said that nothing does.
+    let covers =
+        |event: &Value| matches!(event["kind"].as_str(), Some("line" | "half" | "triangle" | "painted"));
+    let is_background = events.iter().any(|event| event["kind"] == "background");
+    assert!(events.iter().any(covers) != is_background, "{text}");
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
+}
+
+fn json(history: &History) -> Value {
+    serde_json::from_str(&history.to_json()).expect("JSON")
+}
+
+#[test]
+fn the_formula_gives_what_is_told() {
+    for (name, x, y) in [("correct", 60, 120), ("correct", 80, 50), ("floor", 300, 100), ("affine", 60, 120)]
+    {
+        let variant = variant("ch05_perspective_correct", name);
+        let json = json(&of("ch05_perspective_correct", variant, (x, y)));
+        let triangle = json["events"].as_array().expect("a list").iter().find(|e| e["kind"] == "triangle");
+        let values = &triangle.expect("a triangle covers it")["values"];
+        let t = number(&triangle.expect("a triangle")["t"]["here"]["along row"]);
+        // What is told of the ends of the row of the affine picture was reckoned affinely: only its last step is checked.
+        let (a, b) = (&values["row, left"], &values["row, right"]);
+        for v in ["V1", "V2"] {
+            let (va, vb) = (number(&a[v]), number(&b[v]));
+            if name == "affine" {
+                assert!((number(&values["affine"][v]) - (va + (vb - va) * t)).abs() < 1e-12);
+            } else {
+                let (wa, wb) = (number(&a["ω"]), number(&b["ω"]));
+                let expected = (wb * va + (wa * vb - wb * va) * t) / (wb + (wa - wb) * t);
+                assert!((number(&values["V_p"][v]) - expected).abs() < 1e-12);
+            }
+        }
+    }
+}
+
+#[test]
+fn weights_of_the_exact_rasterizer_give_what_is_told() {
+    let variant = variant("ch10_matrices_lighting", "exact");
+    let json = json(&of("ch10_matrices_lighting", variant, (320, 240)));
+    let triangle = &json["events"][1];
+    let (corners, values) = (&triangle["edges"], &triangle["values"]);
+    let weight = |name: &str| number(&corners[name]["weight"]);
+    let one_over_w: f64 = ["A", "B", "C"].iter().map(|name| weight(name) / number(&values[*name]["ω"])).sum();
+    for v in ["V1", "V2", "V3", "V4", "V5"] {
+        let over_w: f64 = ["A", "B", "C"]
+            .iter()
+            .map(|name| weight(name) * number(&values[*name][v]) / number(&values[*name]["ω"]))
+            .sum();
+        assert!((number(&values["V_p"][v]) - over_w / one_over_w).abs() < 1e-12, "{v}");
+    }
+}
+
+#[test]
+fn nothing_says_so() {
+    let variant = variant("ch05_perspective_correct", "correct");
+    let text = of("ch05_perspective_correct", variant, (600, 400)).to_string();
+    assert!(text.contains("Nothing covers this pixel"), "{text}");
+}
+
+/// One history for each chapter, pinned.
+const PINNED: [(&str, &str, (i32, i32)); 13] = [
+    ("ch01_pixels", "pixel", (200, 200)),
+    ("ch02_dda_lines", "star", (300, 260)),
+    ("ch02_triangles", "flat", (150, 100)),
+    ("ch02_triangles", "top-left", (400, 232)),
+    ("ch03_barycentric", "rgb", (100, 200)),
+    ("ch04_projection", "cube", (386, 261)),
+    ("ch05_perspective_correct", "affine", (60, 120)),
+    ("ch05_perspective_correct", "correct", (60, 120)),
+    ("ch06_z_buffer", "z-buffer", (60, 120)),
+    ("ch07_clipping", "near", (121, 69)),
+    ("ch08_cvv", "clipped", (300, 100)),
+    ("ch09_pipeline", "blended", (150, 200)),
+    ("ch10_matrices_lighting", "exact", (320, 240)),
+];
+
+#[test]
+fn histories_are_as_before() {
+    let mut settings = insta::Settings::clone_current();
+    settings.set_snapshot_path("histories");
+    settings.set_prepend_module_to_snapshot(false);
+    settings.set_omit_expression(true);
+    let mut names = Vec::new();
+    for (chapter, name, pixel) in PINNED {
+        let file = format!("{chapter}__{name}");
+        let text = of(chapter, variant(chapter, name), pixel).to_string();
+        settings.bind(|| insta::assert_snapshot!(file.as_str(), text));
+        names.push(format!("{file}.snap"));
+    }
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/histories");
+    for entry in std::fs::read_dir(folder).expect("the folder").filter_map(Result::ok) {
+        let file = entry.file_name().to_string_lossy().into_owned();
+        assert!(names.contains(&file) || file.ends_with(".new"), "{file} is an orphan");
+    }
+    assert!(CHAPTERS.iter().all(|(chapter, _)| PINNED.iter().any(|(name, ..)| *name == chapter.name)));
+}
