@@ -15,6 +15,7 @@
 
 use crate::interpolate::{Interpolation, Projected, step_parameter_and_depth};
 use crate::probe::Listener;
+use crate::real::Scalar;
 use crate::scanline::{Corner, Walk};
 use crate::{Color, Framebuffer, Rect};
 
@@ -35,7 +36,7 @@ pub enum DepthTest {
 impl DepthTest {
     /// Whether a fragment at `depth` passes against the stored one. NaN passes only `Always`.
     #[must_use]
-    pub fn passes(self, depth: f64, stored: f64) -> bool {
+    pub fn passes<D: PartialOrd>(self, depth: D, stored: D) -> bool {
         match self {
             Self::Less => depth < stored,
             Self::LessOrEqual => depth <= stored,
@@ -109,47 +110,47 @@ pub fn w_from_z(z: f64, near: f64, far: f64) -> f64 {
     near * far / (far - z * (far - near))
 }
 
-/// A depth for each pixel.
+/// A depth for each pixel, of double precision unless said otherwise.
 #[derive(Clone, Debug)]
-pub struct DepthBuffer {
+pub struct DepthBuffer<D = f64> {
     rect: Rect,
-    values: Vec<f64>,
+    values: Vec<D>,
     listener: Option<Listener>,
 }
 
 /// Two buffers are equal if they hold the same depths, whoever listens.
-impl PartialEq for DepthBuffer {
+impl<D: PartialEq> PartialEq for DepthBuffer<D> {
     fn eq(&self, other: &Self) -> bool {
         self.rect == other.rect && self.values == other.values
     }
 }
 
-impl DepthBuffer {
+impl<D: Scalar> DepthBuffer<D> {
     /// A buffer of `width` × `height` depths, all of them 0.
     #[must_use]
     pub fn new(width: u32, height: u32) -> Self {
-        let values = vec![0.0; width as usize * height as usize];
+        let values = vec![D::of(0.0); width as usize * height as usize];
         Self { rect: Rect::sized(width, height), values, listener: None }
     }
 
     /// Gives all pixels the same depth.
-    pub fn clear(&mut self, depth: f64) {
+    pub fn clear(&mut self, depth: D) {
         self.values.fill(depth);
     }
 
     /// The depth of the pixel (x, y); `None` outside.
     #[must_use]
-    pub fn get(&self, x: i32, y: i32) -> Option<f64> {
+    pub fn get(&self, x: i32, y: i32) -> Option<D> {
         self.rect.index(x, y).map(|index| self.values[index])
     }
 
     // ANCHOR: test_and_set
     /// Whether a fragment at (x, y) passes the test; if so, its depth replaces the stored one. Outside nothing passes.
-    pub fn test_and_set(&mut self, x: i32, y: i32, depth: f64, test: DepthTest) -> bool {
+    pub fn test_and_set(&mut self, x: i32, y: i32, depth: D, test: DepthTest) -> bool {
         let Some(index) = self.rect.index(x, y) else { return false };
         let passes = test.passes(depth, self.values[index]);
         if let Some(listener) = &self.listener {
-            listener.tested(x, y, depth, self.values[index], passes);
+            listener.tested(x, y, depth.into(), self.values[index].into(), passes);
         }
         if passes {
             self.values[index] = depth;
@@ -159,23 +160,40 @@ impl DepthBuffer {
     // ANCHOR_END: test_and_set
 }
 
-/// What is drawn into: a plane of colors and a plane of depths.
+/// What is drawn into: a plane of colors and a plane of depths, of the precision in which the rasterizer computes.
 #[derive(Clone, Debug)]
-pub struct Target {
+pub struct Target<D = f64> {
     /// The picture.
     pub color: Framebuffer,
     /// How far away what is seen in each pixel is.
-    pub depth: DepthBuffer,
+    pub depth: DepthBuffer<D>,
 }
 
-impl Target {
+impl<D: Scalar> Target<D> {
     /// A target of `width` × `height` pixels; clear it before drawing.
     ///
     /// # Panics
     /// As [`Framebuffer::new`] does.
     #[must_use]
-    pub fn new(width: u32, height: u32) -> Self {
+    pub fn sized(width: u32, height: u32) -> Self {
         Self { color: Framebuffer::new(width, height), depth: DepthBuffer::new(width, height) }
+    }
+
+    /// Gives all pixels a color and a depth: what the last frame has left must not stay. Book, section 9.4.1.
+    pub fn clear(&mut self, color: Color, depth: D) {
+        self.color.clear(color);
+        self.depth.clear(depth);
+    }
+}
+
+impl Target {
+    /// A target of `width` × `height` pixels in double precision; clear it before drawing.
+    ///
+    /// # Panics
+    /// As [`Framebuffer::new`] does.
+    #[must_use]
+    pub fn new(width: u32, height: u32) -> Self {
+        Self::sized(width, height)
     }
 
     /// A target for the picture of a framebuffer: of its size, black, and with the same listener.
@@ -185,12 +203,6 @@ impl Target {
         target.color.listen(framebuffer.listener());
         target.depth.listener = framebuffer.listener();
         target
-    }
-
-    /// Gives all pixels a color and a depth: what the last frame has left must not stay. Book, section 9.4.1.
-    pub fn clear(&mut self, color: Color, depth: f64) {
-        self.color.clear(color);
-        self.depth.clear(depth);
     }
 
     // ANCHOR: fill

@@ -289,12 +289,14 @@ impl<R: Scalar> Exact<R> {
 }
 
 impl<R: Scalar> Rasterizer for Exact<R> {
+    type Depth = R;
+
     fn draw<S: Shader<N>, P: Probe + ?Sized, const N: usize>(
         &self,
         triangles: impl Iterator<Item = [NdcVertex<N>; 3]>,
         state: &RenderState,
         shader: &S,
-        target: &mut Target,
+        target: &mut Target<R>,
         probe: &P,
     ) {
         for triangle in triangles {
@@ -339,7 +341,7 @@ fn draw_triangle<R: Scalar, S: Shader<N>, P: Probe + ?Sized, const N: usize>(
     triangle: &[NdcVertex<N>; 3],
     state: &RenderState,
     shader: &S,
-    target: &mut Target,
+    target: &mut Target<R>,
     probe: &P,
 ) {
     // Viewport: NDC → screen, and to 1/256 pixel.

@@ -73,7 +73,7 @@ pub enum Verdict {
 // ANCHOR: merge
 /// Merges a fragment into the target at (x, y): depth test, blending, writing.
 pub fn merge<R: Scalar>(
-    target: &mut Target,
+    target: &mut Target<R>,
     options: Merge,
     rounding: Rounding,
     [x, y]: [i32; 2],
@@ -83,7 +83,6 @@ pub fn merge<R: Scalar>(
     if !shaded.keep {
         return Verdict::Discarded;
     }
-    let depth = depth.into();
     let passes = if options.depth_write {
         target.depth.test_and_set(x, y, depth, options.depth_test)
     } else {

@@ -124,7 +124,7 @@ pub fn draw<S: Shader<N>, Z: Rasterizer, P: Probe + ?Sized, const N: usize>(
     shader: &S,
     state: &RenderState,
     rasterizer: &Z,
-    target: &mut Target,
+    target: &mut Target<Z::Depth>,
     probe: &P,
 ) {
     // 1. Vertex shading: every vertex once, however many triangles share it.

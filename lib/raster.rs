@@ -12,19 +12,23 @@ use crate::interpolate::{Projected, step_parameter_and_depth};
 use crate::merge::merge;
 use crate::pipeline::RenderState;
 use crate::probe::{FragmentEvent, Probe, Vertex};
+use crate::real::Scalar;
 use crate::scanline::Corner;
 use crate::shader::Shader;
 use crate::varyings::{TriangleVaryings, weight_gradients};
 
 /// Draws triangles, NDC → target.
 pub trait Rasterizer {
+    /// The precision of depths.
+    type Depth: Scalar;
+
     /// Draws the triangles in order. Fragments reach a pixel in the order of their triangles.
     fn draw<S: Shader<N>, P: Probe + ?Sized, const N: usize>(
         &self,
         triangles: impl Iterator<Item = [NdcVertex<N>; 3]>,
         state: &RenderState,
         shader: &S,
-        target: &mut Target,
+        target: &mut Target<Self::Depth>,
         probe: &P,
     );
 }
@@ -37,6 +41,8 @@ pub trait Rasterizer {
 pub struct Scanline;
 
 impl Rasterizer for Scanline {
+    type Depth = f64;
+
     fn draw<S: Shader<N>, P: Probe + ?Sized, const N: usize>(
         &self,
         triangles: impl Iterator<Item = [NdcVertex<N>; 3]>,

@@ -63,7 +63,7 @@ pub trait Real:
 }
 
 /// A single number: one answer to a comparison, and a value that can be stored.
-pub trait Scalar: Real<Mask = bool> + Into<f64> {}
+pub trait Scalar: Real<Mask = bool> + PartialOrd + Into<f64> {}
 
 impl Scalar for f64 {}
 impl Scalar for f32 {}

@@ -215,7 +215,7 @@ impl Shader<3> for Flat {
 struct Counter(RefCell<Vec<u32>>, Rect);
 
 impl Counter {
-    fn new(target: &Target) -> Self {
+    fn new<D>(target: &Target<D>) -> Self {
         let rect = target.color.rect();
         Self(RefCell::new(vec![0; rect.columns().len() * rect.rows().len()]), rect)
     }
@@ -310,19 +310,19 @@ proptest! {
         let single = picture(&mesh, &Exact::<f32>::new());
         for y in double.color.rect().rows() {
             for x in double.color.rect().columns() {
-                let [a, b] = [&double, &single].map(|target| target.color.get(x, y).expect("inside").channels());
+                let [a, b] = [&double.color, &single.color].map(|color| color.get(x, y).expect("inside").channels());
                 prop_assert!(a.iter().zip(b).all(|(a, b)| a.abs_diff(b) <= 1));
-                let [a, b] = [&double, &single].map(|target| target.depth.get(x, y).expect("inside"));
-                prop_assert!((a - b).abs() < 1e-6 && (a == 1.0) == (b == 1.0));
+                let (a, b) = (double.depth.get(x, y).expect("inside"), single.depth.get(x, y).expect("inside"));
+                prop_assert!((a - f64::from(b)).abs() < 1e-6 && (a == 1.0) == (b == 1.0));
             }
         }
     }
 }
 
-fn picture(mesh: &Mesh<(DVec4, [f64; 3])>, rasterizer: &impl Rasterizer) -> Target {
+fn picture<Z: Rasterizer>(mesh: &Mesh<(DVec4, [f64; 3])>, rasterizer: &Z) -> Target<Z::Depth> {
     let state = RenderState::default();
-    let mut target = Target::new(40, 30);
-    target.clear(state.clear_color, state.clear_depth);
+    let mut target = Target::sized(40, 30);
+    target.clear(state.clear_color, Z::Depth::of(state.clear_depth));
     draw(mesh, &Flat, &state, rasterizer, &mut target, &Silent);
     target
 }
@@ -452,9 +452,9 @@ fn interpolation_is_that_of_a_production_rasterizer<R: Scalar>() {
             let ndc = (dvec2(x, y) / 256.0 / 16.0 - 1.0).extend(0.0);
             NdcVertex { position: ndc, w, varyings: [r, g, b] }
         };
-        let mut target = Target::new(32, 32);
+        let mut target = Target::sized(32, 32);
         let counter = Counter::new(&target);
-        target.clear(Color::BLACK, 1.0);
+        target.clear(Color::BLACK, R::of(1.0));
         let triangle = [vertex(0), vertex(1), vertex(2)];
         Exact::<R>::new().draw(
             [triangle].into_iter(),

@@ -382,7 +382,7 @@ impl Probe for Strays {
 
 #[test]
 fn spikes_are_texels_from_outside_a_triangle() {
-    fn strays(limit: StepLimit, rasterizer: &impl Rasterizer, ball: &Model) -> usize {
+    fn strays(limit: StepLimit, rasterizer: &impl Rasterizer<Depth = f64>, ball: &Model) -> usize {
         let walk = Walk { limit, ..Walk::default() };
         let state = RenderState { walk, cull: CullMode::Back, ..RenderState::default() };
         let mut target = Target::new(640, 480);
