@@ -107,7 +107,7 @@ pub enum ClipTest {
 }
 
 impl ClipTest {
-    fn signed_distance(self, plane: &Plane, position: DVec4) -> f64 {
+    pub(crate) fn signed_distance(self, plane: &Plane, position: DVec4) -> f64 {
         match self {
             Self::BeforeDivide => plane.signed_distance(position),
             Self::AfterDivide => plane.signed_distance(position / position.w),

@@ -32,7 +32,16 @@ impl CullMode {
     /// A triangle without area counts as seen from behind, as in Direct3D (11.3 functional specification, 15.11.1).
     #[must_use]
     pub fn culls(self, signed_area: f64, front: Winding) -> bool {
-        let is_front = Winding::of(signed_area) == Some(front);
+        self.culls_facing(Winding::of(signed_area) == Some(front))
+    }
+
+    /// The same for a triangle of this winding.
+    #[must_use]
+    pub fn culls_winding(self, winding: Winding, front: Winding) -> bool {
+        self.culls_facing(winding == front)
+    }
+
+    const fn culls_facing(self, is_front: bool) -> bool {
         match self {
             Self::None => false,
             Self::Back => !is_front,

@@ -144,6 +144,12 @@ impl<D: Scalar> DepthBuffer<D> {
         self.rect.index(x, y).map(|index| self.values[index])
     }
 
+    /// All depths in memory order, for who writes many at a time; nobody is told of that.
+    #[cfg(feature = "tiled")]
+    pub(crate) fn values_mut(&mut self) -> &mut [D] {
+        &mut self.values
+    }
+
     // ANCHOR: test_and_set
     /// Whether a fragment at (x, y) passes the test; if so, its depth replaces the stored one. Outside nothing passes.
     pub fn test_and_set(&mut self, x: i32, y: i32, depth: D, test: DepthTest) -> bool {
@@ -183,6 +189,16 @@ impl<D: Scalar> Target<D> {
     pub fn clear(&mut self, color: Color, depth: D) {
         self.color.clear(color);
         self.depth.clear(depth);
+    }
+}
+
+impl<D: Scalar> Target<D> {
+    /// The same picture and the same depths, these in another precision.
+    #[must_use]
+    pub fn with_depths_of<E: Scalar>(&self) -> Target<E> {
+        let values = self.depth.values.iter().map(|&depth| E::of(depth.into())).collect();
+        let depth = DepthBuffer { rect: self.depth.rect, values, listener: self.depth.listener.clone() };
+        Target { color: self.color.clone(), depth }
     }
 }
 

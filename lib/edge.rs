@@ -315,12 +315,12 @@ impl<R: Scalar> Rasterizer for Exact<R> {
 /// How far beyond the border of the view a vertex may be, in NDC.
 const GUARD_BAND: f64 = 2.0;
 
-fn is_in_guard_band<const N: usize>(vertex: &NdcVertex<N>) -> bool {
+pub(crate) fn is_in_guard_band<const N: usize>(vertex: &NdcVertex<N>) -> bool {
     vertex.w > 0.0 && vertex.position.truncate().abs().max_element() <= GUARD_BAND
 }
 
 /// The part of a triangle in the guard band: only for pipelines that do not clip to the view volume.
-fn cut_to_guard_band<const N: usize>(triangle: [NdcVertex<N>; 3]) -> ArrayVec<NdcVertex<N>, 9> {
+pub(crate) fn cut_to_guard_band<const N: usize>(triangle: [NdcVertex<N>; 3]) -> ArrayVec<NdcVertex<N>, 9> {
     const PLANES: [Plane; 4] = [
         Plane::through_eye(dvec4(1.0, 0.0, 0.0, GUARD_BAND)),
         Plane::through_eye(dvec4(-1.0, 0.0, 0.0, GUARD_BAND)),

@@ -47,6 +47,18 @@ impl Color {
         Self::rgb(value, value, value)
     }
 
+    /// The word 0x00RRGGBB.
+    #[cfg(feature = "tiled")]
+    pub(crate) const fn bits(self) -> u32 {
+        self.0
+    }
+
+    /// The color of a word 0x00RRGGBB.
+    #[cfg(feature = "tiled")]
+    pub(crate) const fn from_bits(bits: u32) -> Self {
+        Self(bits & 0x00FF_FFFF)
+    }
+
     /// The channels `[red, green, blue]`.
     #[must_use]
     pub const fn channels(self) -> [u8; 3] {
@@ -270,6 +282,12 @@ impl Framebuffer {
         if let Some(listener) = &self.listener {
             report(listener.as_ref());
         }
+    }
+
+    /// All pixels in memory order, for who writes many at a time; nobody is told of that.
+    #[cfg(feature = "tiled")]
+    pub(crate) fn pixels_mut(&mut self) -> &mut [Color] {
+        &mut self.pixels
     }
 
     /// Changes pictures with another framebuffer; listeners stay where they are.

@@ -31,6 +31,8 @@
 //!   more varyings      weights corrected by ω, derivatives
 //!   more edge          the exact rasterizer: edge functions, pixel centers, the top-left rule
 //!   more antialias     several samples in each pixel
+//!   more lanes         eight numbers at a time
+//!   more tiled         the fast rasterizer: the same picture by tiles, lanes and threads
 //!   …    program       what the eleven `main`s share; nothing above imports it
 //! ```
 //!
@@ -75,6 +77,10 @@ pub mod srgb;
 pub mod varyings;
 pub mod edge;
 pub mod antialias;
+#[cfg(feature = "tiled")]
+pub mod lanes;
+#[cfg(feature = "tiled")]
+pub mod tiled;
 #[cfg(feature = "files")]
 pub mod files;
 #[cfg(feature = "files")]

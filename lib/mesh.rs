@@ -96,12 +96,23 @@ impl<A> Mesh<A> {
     // ANCHOR: triangles
     /// Primitive assembly: the triangles in order, each as the positions of its three vertices in the list.
     pub fn triangles(&self) -> impl Iterator<Item = [usize; 3]> {
-        (0..self.triangle_count()).map(|triangle| {
-            [0, 1, 2].map(|corner| {
-                let place = triangle * 3 + corner;
-                self.indices.as_ref().map_or(place, |indices| indices[place] as usize)
-            })
-        })
+        (0..self.triangle_count()).map(|number| self.triangle(number))
+    }
+
+    /// One triangle, counted from 0: the positions of its vertices in the list.
+    ///
+    /// # Panics
+    /// If there is no such triangle.
+    #[must_use]
+    pub fn triangle(&self, number: usize) -> [usize; 3] {
+        let first = number * 3;
+        match &self.indices {
+            None => [first, first + 1, first + 2],
+            Some(indices) => {
+                let corners = &indices[first..first + 3];
+                [corners[0] as usize, corners[1] as usize, corners[2] as usize]
+            }
+        }
     }
     // ANCHOR_END: triangles
 

@@ -127,6 +127,11 @@ pub fn draw<S: Shader<N>, Z: Rasterizer, P: Probe + ?Sized, const N: usize>(
     target: &mut Target<Z::Depth>,
     probe: &P,
 ) {
+    // A rasterizer may do all of it in a way of its own: then the picture is the same.
+    if rasterizer.draw_mesh(mesh, shader, state, target) {
+        return;
+    }
+
     // 1. Vertex shading: every vertex once, however many triangles share it.
     let shaded: Vec<ClipVertex<N>> = mesh.vertices().iter().map(|vertex| shader.vertex(vertex)).collect();
 

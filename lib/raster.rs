@@ -10,6 +10,7 @@ use crate::depth::Target;
 use crate::framebuffer::Rounding;
 use crate::interpolate::{Projected, step_parameter_and_depth};
 use crate::merge::merge;
+use crate::mesh::Mesh;
 use crate::pipeline::RenderState;
 use crate::probe::{FragmentEvent, Probe, Vertex};
 use crate::real::Scalar;
@@ -31,6 +32,17 @@ pub trait Rasterizer {
         target: &mut Target<Self::Depth>,
         probe: &P,
     );
+
+    /// Draws a whole mesh, all stages of the pipeline, if the rasterizer has a way of its own to do so; `false` if not.
+    fn draw_mesh<S: Shader<N>, const N: usize>(
+        &self,
+        _mesh: &Mesh<S::Attributes>,
+        _shader: &S,
+        _state: &RenderState,
+        _target: &mut Target<Self::Depth>,
+    ) -> bool {
+        false
+    }
 }
 
 /// The book's rasterizer: rows between two edges, from chapter 2, with everything that has come since.

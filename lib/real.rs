@@ -17,6 +17,8 @@
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
+use crate::Color;
+
 /// A number with the four operations, which are exact IEEE operations: one rounding each, nothing fused.
 pub trait Real:
     Copy
@@ -32,10 +34,10 @@ pub trait Real:
 
     /// A literal: the number nearest to `value`.
     fn of(value: f64) -> Self;
-    /// The lesser of two numbers.
+    /// The lesser of two numbers; the other one if this one is NaN. The other one is none.
     #[must_use]
     fn min(self, other: Self) -> Self;
-    /// The greater of two numbers.
+    /// The greater of two numbers; the other one if this one is NaN. The other one is none.
     #[must_use]
     fn max(self, other: Self) -> Self;
     /// The greatest whole number that is not greater.
@@ -60,6 +62,10 @@ pub trait Real:
         row: Self,
         table: impl Fn(usize, usize) -> [f64; C],
     ) -> [Self; C];
+    /// The channels, 0..=255, of the color in a column and a row (whole numbers, not negative) of a plane of colors that
+    /// is so many columns wide. Outside the plane it is black.
+    #[must_use]
+    fn look_up_color(column: Self, row: Self, width: u32, colors: &[Color]) -> [Self; 3];
 }
 
 /// A single number: one answer to a comparison, and a value that can be stored.
@@ -138,6 +144,11 @@ macro_rules! plain_number {
                 table: impl Fn(usize, usize) -> [f64; C],
             ) -> [Self; C] {
                 table(column as usize, row as usize).map(Self::of)
+            }
+
+            fn look_up_color(column: Self, row: Self, width: u32, colors: &[Color]) -> [Self; 3] {
+                let color = colors.get(row as usize * width as usize + column as usize);
+                color.copied().unwrap_or_default().to_f64().map(Self::of)
             }
         }
     };

@@ -42,9 +42,9 @@ use crate::varyings::Derivatives;
 ///
 /// N is the number of *varyings*: the values that the vertex shader hands to the fragment shader, interpolated
 /// perspective-correctly on the way. Book, section 9.2.
-pub trait Shader<const N: usize> {
+pub trait Shader<const N: usize>: Sync {
     /// What is known of a vertex: the record of the vertex buffer.
-    type Attributes;
+    type Attributes: Sync;
 
     /// Attributes → position in clip space, and varyings.
     fn vertex(&self, attributes: &Self::Attributes) -> ClipVertex<N>;

@@ -58,6 +58,16 @@ impl AddressMode {
         inside.max(R::of(0.0)).min(last)
     }
     // ANCHOR_END: address_mode
+
+    /// The texel index in 0..count that a coordinate falls into: ⌊u · count⌋, and the address mode.
+    ///
+    /// Repeated, u is wrapped before it is scaled, as the book does: no division is needed.
+    fn index<R: Real>(self, u: R, count: R) -> R {
+        match self {
+            Self::Clamp | Self::Mirror => self.apply((u * count).floor(), count),
+            Self::Repeat => Self::Clamp.apply(((u - u.floor()) * count).floor(), count),
+        }
+    }
 }
 
 /// A picture of `width` × `height` texels, row 0 at the bottom: v points up, as y does.
@@ -122,18 +132,16 @@ impl Texture {
     #[must_use]
     pub fn nearest<R: Real>(&self, [u, v]: [R; 2], mode: AddressMode) -> [R; 3] {
         let [width, height] = self.size();
-        let column = mode.apply((u * width).floor(), width);
-        let row = mode.apply((v * height).floor(), height);
-        R::look_up(column, row, |column, row| self.texel(column, row))
+        let column = mode.index(u, width);
+        let row = mode.index(v, height);
+        R::look_up_color(column, row, self.width, &self.texels)
     }
     // ANCHOR_END: nearest
 
     /// The mixture of the four texels around (u, v), as channels in 0..=255.
     #[must_use]
     pub fn bilinear<R: Real>(&self, uv: [R; 2], mode: AddressMode) -> [R; 3] {
-        bilinear(uv, self.size(), mode, |column, row| {
-            R::look_up(column, row, |column, row| self.texel(column, row))
-        })
+        bilinear(uv, self.size(), mode, |column, row| R::look_up_color(column, row, self.width, &self.texels))
     }
 
     fn size<R: Real>(&self) -> [R; 2] {

@@ -84,46 +84,81 @@ impl<R: Real> Even<R> {
 }
 
 // ANCHOR: triangle_varyings
+/// What a corner carries, divided by ω: it can be shared by all triangles that meet there.
+#[derive(Clone, Copy, Debug)]
+pub struct CornerVaryings<R, const N: usize> {
+    /// 1/ω; for [`Interpolation::Affine`] ω itself.
+    pub distance: R,
+    /// The depth.
+    pub depth: R,
+    /// V/ω; for [`Interpolation::Affine`] V itself.
+    pub values: [R; N],
+}
+
+impl<R: Real, const N: usize> CornerVaryings<R, N> {
+    /// Divides what is to be interpolated by ω.
+    #[must_use]
+    pub fn new(vertex: &NdcVertex<N>, interpolation: Interpolation) -> Self {
+        let (w, depth) = (R::of(vertex.w), R::of(vertex.position.z));
+        let values = vertex.varyings.map(R::of);
+        match interpolation {
+            Interpolation::Affine => Self { distance: w, depth, values },
+            Interpolation::PerspectiveCorrect | Interpolation::Reciprocal => {
+                let over_w = R::of(1.0) / w;
+                Self { distance: over_w, depth, values: values.map(|value| value * over_w) }
+            }
+        }
+    }
+
+    /// Multiplies by ω again: what was interpolated evenly becomes ω and values.
+    #[must_use]
+    pub fn multiplied(self, interpolation: Interpolation) -> Projected<R, N> {
+        match interpolation {
+            Interpolation::Affine => Projected { w: self.distance, values: self.values },
+            Interpolation::PerspectiveCorrect | Interpolation::Reciprocal => {
+                let w = R::of(1.0) / self.distance;
+                Projected { w, values: self.values.map(|value| value * w) }
+            }
+        }
+    }
+}
+
 /// What the corners of a triangle carry, made ready for weights: 1/ω, V/ω and the depth change evenly on the screen.
 #[derive(Clone, Copy, Debug)]
 pub struct TriangleVaryings<R, const N: usize> {
-    /// 1/ω; for [`Interpolation::Affine`] ω itself.
     distance: Even<R>,
-    /// V/ω; for [`Interpolation::Affine`] V itself.
     values: [Even<R>; N],
     depth: Even<R>,
     interpolation: Interpolation,
 }
 
 impl<R: Real, const N: usize> TriangleVaryings<R, N> {
-    /// Divides what is to be interpolated by ω, once for each corner.
+    /// From the three vertices of a triangle.
     #[must_use]
     pub fn new(corners: &[NdcVertex<N>; 3], interpolation: Interpolation) -> Self {
-        let w = from_fn(|i| R::of(corners[i].w));
-        let value = |i: usize, k: usize| R::of(corners[i].varyings[k]);
-        let depth = Even::new(from_fn(|i| R::of(corners[i].position.z)));
-        let (distance, values) = match interpolation {
-            Interpolation::Affine => (w, from_fn(|k| Even::new(from_fn(|i| value(i, k))))),
-            Interpolation::PerspectiveCorrect | Interpolation::Reciprocal => {
-                let over_w = w.map(|w| R::of(1.0) / w);
-                (over_w, from_fn(|k| Even::new(from_fn(|i| value(i, k) * over_w[i]))))
-            }
-        };
-        Self { distance: Even::new(distance), values, depth, interpolation }
+        Self::between(
+            corners.each_ref().map(|vertex| CornerVaryings::new(vertex, interpolation)),
+            interpolation,
+        )
+    }
+
+    /// From what the corners carry.
+    #[must_use]
+    pub fn between([a, b, c]: [CornerVaryings<R, N>; 3], interpolation: Interpolation) -> Self {
+        Self {
+            distance: Even::new([a.distance, b.distance, c.distance]),
+            values: from_fn(|k| Even::new([a.values[k], b.values[k], c.values[k]])),
+            depth: Even::new([a.depth, b.depth, c.depth]),
+            interpolation,
+        }
     }
 
     /// ω and the varyings where the second and the third corner have these weights.
     #[must_use]
     pub fn at(&self, weights: [R; 2]) -> Projected<R, N> {
-        let distance = self.distance.at(weights);
+        let (distance, depth) = (self.distance.at(weights), R::of(0.0));
         let values = from_fn(|k| self.values[k].at(weights));
-        match self.interpolation {
-            Interpolation::Affine => Projected { w: distance, values },
-            Interpolation::PerspectiveCorrect | Interpolation::Reciprocal => {
-                let w = R::of(1.0) / distance;
-                Projected { w, values: values.map(|value| value * w) }
-            }
-        }
+        CornerVaryings { distance, depth, values }.multiplied(self.interpolation)
     }
 
     /// The depth there.

@@ -1,5 +1,7 @@
 //! What the figures of the later chapters draw on: a target, and the pipeline laid into the middle of it.
 
+use std::sync::Arc;
+
 use super::{Failure, Sitting};
 use crate::depth::Target;
 use crate::edge::Exact;
@@ -10,6 +12,7 @@ use crate::probe::{Listener, Probe, Silent};
 use crate::raster::Scanline;
 use crate::shader::Shader;
 use crate::texture::Texture;
+use crate::tiled::Tiled;
 use crate::transform::Viewport;
 use crate::{Color, Framebuffer};
 
@@ -21,11 +24,13 @@ pub enum RasterizerChoice {
     Scanline,
     /// The exact one in double precision, [`Exact`].
     Edge,
+    /// The fast one, [`Tiled`]; while somebody listens, [`Exact`] in single precision, which draws the same.
+    Tiled,
 }
 
 impl RasterizerChoice {
     /// All of them.
-    pub const ALL: [Self; 2] = [Self::Scanline, Self::Edge];
+    pub const ALL: [Self; 3] = [Self::Scanline, Self::Edge, Self::Tiled];
 
     /// How it is called on the command line.
     #[must_use]
@@ -33,6 +38,7 @@ impl RasterizerChoice {
         match self {
             Self::Scanline => "scanline",
             Self::Edge => "edge",
+            Self::Tiled => "tiled",
         }
     }
 }
@@ -47,6 +53,7 @@ pub struct Canvas {
     rasterizer: RasterizerChoice,
     /// Who listens to the pipeline; the target carries the same listener.
     listener: Option<Listener>,
+    tiled: Arc<Tiled>,
     aspect: f64,
 }
 
@@ -59,7 +66,7 @@ impl Canvas {
         framebuffer.listen(sitting.listener.clone());
         let target = Target::like(&framebuffer);
         let Sitting { frame, rasterizer, listener, .. } = sitting.clone();
-        Self { target, frame, rasterizer, listener, aspect }
+        Self { target, frame, rasterizer, listener, tiled: Arc::default(), aspect }
     }
 
     pub(super) fn into_picture(self) -> Framebuffer {
@@ -112,6 +119,16 @@ impl Canvas {
         match self.rasterizer {
             RasterizerChoice::Scanline => draw(mesh, shader, state, &Scanline, target, probe),
             RasterizerChoice::Edge => draw(mesh, shader, state, &Exact::<f64>::new(), target, probe),
+            RasterizerChoice::Tiled => {
+                // Depths are of single precision there; numbers that come from it lose nothing on the way.
+                let mut single = target.with_depths_of::<f32>();
+                if self.listener.is_some() {
+                    draw(mesh, shader, state, &Exact::<f32>::new(), &mut single, probe);
+                } else {
+                    draw(mesh, shader, state, self.tiled.as_ref(), &mut single, probe);
+                }
+                *target = single.with_depths_of::<f64>();
+            }
         }
     }
     // ANCHOR_END: draw

@@ -1,0 +1,221 @@
+//! Beyond the book: eight numbers at a time.
+//!
+//! A formula that is generic over [`Real`] runs on eight `f32` with one instruction for each operation, the same
+//! operations in the same order as on one. So eight fragments are shaded in the time of one, to the same colors.
+//!
+//! ```
+//! use rasterbook::lanes::Lanes;
+//! use rasterbook::light::lambert;
+//! use rasterbook::real::Real;
+//!
+//! // Eight normals at once, leaning from upright to flat.
+//! let y = Lanes::new([1.0, 0.9, 0.8, 0.7, 0.6, 0.4, 0.2, 0.0]);
+//! let bright = lambert([Lanes::of(0.0), y, Lanes::of(0.0)], [0.0, 1.0, 0.0].map(Lanes::of));
+//! assert_eq!(bright.to_array(), y.to_array());
+//! ```
+
+use std::array::from_fn;
+
+use bytemuck::cast;
+use wide::{CmpGe, CmpGt, CmpLe, CmpLt, f32x8, i32x8};
+
+use crate::Color;
+use crate::real::{Mask, Real};
+
+/// How many numbers.
+pub const LANES: usize = 8;
+
+/// Eight numbers of single precision.
+pub type Lanes = f32x8;
+
+/// Yes or no for each of eight numbers.
+#[derive(Clone, Copy, Debug)]
+pub struct LaneMask(f32x8);
+
+impl Mask for LaneMask {
+    fn all(answer: bool) -> Self {
+        Self(f32x8::splat(f32::from_bits(if answer { u32::MAX } else { 0 })))
+    }
+
+    fn and(self, other: Self) -> Self {
+        Self(self.0 & other.0)
+    }
+
+    fn not(self) -> Self {
+        Self(self.0 ^ Self::all(true).0)
+    }
+}
+
+impl LaneMask {
+    /// The lanes from `start` up to, but not including, `end`.
+    pub(crate) fn range(start: i32, end: i32) -> Self {
+        let number = f32x8::new([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
+        let (start, end) = (f32x8::splat(start as f32), f32x8::splat(end as f32));
+        Self(number.cmp_ge(start) & number.cmp_lt(end))
+    }
+
+    /// The lanes in which a number is negative.
+    pub(crate) fn of_signs(numbers: i32x8) -> Self {
+        let all_bits: i32x8 = numbers >> 31;
+        Self(cast(all_bits))
+    }
+
+    /// `yes` in the lanes of the mask, `no` in the others.
+    pub(crate) fn choose(self, yes: i32x8, no: i32x8) -> i32x8 {
+        let mask: i32x8 = cast(self.0);
+        mask.blend(yes, no)
+    }
+
+    /// A bit for each lane.
+    pub(crate) fn bits(self) -> i32 {
+        self.0.move_mask()
+    }
+}
+
+/// Comparisons of eight depths.
+pub(crate) fn is_less_or_equal(a: Lanes, b: Lanes) -> LaneMask {
+    LaneMask(a.cmp_le(b))
+}
+
+pub(crate) fn is_greater(a: Lanes, b: Lanes) -> LaneMask {
+    LaneMask(a.cmp_gt(b))
+}
+
+impl Real for f32x8 {
+    type Mask = LaneMask;
+
+    fn of(value: f64) -> Self {
+        Self::splat(value as f32)
+    }
+
+    fn min(self, other: Self) -> Self {
+        self.fast_min(other)
+    }
+
+    fn max(self, other: Self) -> Self {
+        self.fast_max(other)
+    }
+
+    fn floor(self) -> Self {
+        if cfg!(any(target_feature = "sse4.1", not(target_arch = "x86_64"))) {
+            return Self::floor(self);
+        }
+        // Old instruction sets cannot round down: cut off, and take one away where that went up. From 2²³ on there are
+        // no fractions, and whole numbers need not fit.
+        let cut = self.fast_trunc_int().round_float();
+        let floor = cut - (cut.cmp_gt(self) & Self::ONE);
+        self.abs().cmp_lt(Self::splat(8_388_608.0)).blend(floor, self)
+    }
+
+    fn sqrt(self) -> Self {
+        Self::sqrt(self)
+    }
+
+    fn is_less(self, other: Self) -> LaneMask {
+        LaneMask(self.cmp_lt(other))
+    }
+
+    fn select(mask: LaneMask, yes: Self, no: Self) -> Self {
+        mask.0.blend(yes, no)
+    }
+
+    fn map(self, function: impl Fn(f64) -> f64) -> Self {
+        Self::new(self.to_array().map(|value| function(f64::from(value)) as f32))
+    }
+
+    fn look_up<const C: usize>(
+        column: Self,
+        row: Self,
+        table: impl Fn(usize, usize) -> [f64; C],
+    ) -> [Self; C] {
+        let (columns, rows) = (column.to_array(), row.to_array());
+        let records: [[f64; C]; LANES] = from_fn(|lane| table(columns[lane] as usize, rows[lane] as usize));
+        from_fn(|k| Self::new(from_fn(|lane| records[lane][k] as f32)))
+    }
+
+    fn look_up_color(column: Self, row: Self, width: u32, colors: &[Color]) -> [Self; 3] {
+        let places = row.fast_trunc_int() * i32x8::splat(width as i32) + column.fast_trunc_int();
+        let places = places.to_array();
+        let found: [i32; LANES] =
+            from_fn(|lane| colors.get(places[lane] as usize).map_or(0, |color| color.bits() as i32));
+        channels(i32x8::new(found))
+    }
+}
+
+/// The channels of eight words 0x00RRGGBB, 0..=255.
+pub(crate) fn channels(words: i32x8) -> [Lanes; 3] {
+    let byte = i32x8::splat(0xFF);
+    [(words >> 16) & byte, (words >> 8) & byte, words & byte].map(i32x8::round_float)
+}
+
+/// The words of eight colors, channels rounded to the nearest of 0..=255; NaN gives 0.
+pub(crate) fn packed(color: [Lanes; 3]) -> i32x8 {
+    let (zero, half, most) = (f32x8::splat(0.0), f32x8::splat(0.5), f32x8::splat(255.0));
+    let [red, green, blue] =
+        color.map(|channel| (channel + half).fast_max(zero).fast_min(most).fast_trunc_int());
+    (red << 16) | (green << 8) | blue
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::framebuffer::Rounding;
+
+    const ODD: [f32; 8] = [-0.5, 0.0, 2.999_999, -3.0, 8_388_607.5, 1e30, -7.25, 254.5];
+
+    #[test]
+    fn lanes_do_what_one_number_does() {
+        let other = [1.0, -2.0, 3.5, 0.25, -1e9, 1e-3, 7.0, 255.0];
+        let (a, b) = (Lanes::new(ODD), Lanes::new(other));
+        let check = |lanes: Lanes, one: fn(f32, f32) -> f32| {
+            assert_eq!(lanes.to_array().map(f32::to_bits), from_fn(|i| one(ODD[i], other[i]).to_bits()));
+        };
+        check(a + b, |a, b| a + b);
+        check(a * b, |a, b| a * b);
+        check(a / b, |a, b| a / b);
+        check(Real::min(a, b), Real::min);
+        check(Real::max(a, b), Real::max);
+        check(Real::floor(a), |a, _| Real::floor(a));
+        check(Real::floor(b), |_, b| Real::floor(b));
+        check(Real::select(a.is_less(b), a, b), |a, b| if a < b { a } else { b });
+        check(Real::map(b, |v| v * 0.1), |_, b| Real::map(b, |v| v * 0.1));
+    }
+
+    #[test]
+    fn a_number_that_is_none_gives_way() {
+        let nan = Lanes::of(f64::NAN);
+        assert_eq!(Real::max(nan, Lanes::of(2.0)).to_array(), [2.0; 8]);
+        assert_eq!(Real::min(nan, Lanes::of(2.0)).to_array(), [2.0; 8]);
+    }
+
+    #[test]
+    fn masks() {
+        assert_eq!(LaneMask::range(2, 5).bits(), 0b1_1100);
+        assert_eq!(LaneMask::range(-3, 9).bits(), 0xFF);
+        let signs = i32x8::new([-1, 2, 0, 3, i32::MAX, i32::MIN, 7, -9]);
+        assert_eq!(LaneMask::of_signs(signs).bits(), 0b1010_0001);
+        assert_eq!(LaneMask::range(1, 3).choose(signs, i32x8::splat(5)).to_array(), [5, 2, 0, 5, 5, 5, 5, 5]);
+        assert_eq!(LaneMask::all(true).not().bits(), 0);
+        assert_eq!(LaneMask::range(0, 4).and(LaneMask::range(3, 8)).bits(), 0b1000);
+    }
+
+    #[test]
+    fn colors_to_words_and_back() {
+        let values = [-1.0, 0.0, 0.5, 127.49, 254.5, 255.0, 300.0, f32::NAN];
+        let color = [Lanes::new(values), Lanes::of(10.0), Lanes::of(20.0)];
+        for (word, value) in packed(color).to_array().into_iter().zip(values) {
+            assert_eq!(Color::from_bits(word as u32), Rounding::Nearest.color([value, 10.0, 20.0]));
+        }
+        let [red, green, blue] = channels(i32x8::splat(0x0010_2030));
+        assert_eq!([red, green, blue].map(|lanes| lanes.to_array()[3]), [16.0, 32.0, 48.0]);
+    }
+
+    #[test]
+    fn colors_are_looked_up() {
+        let colors: Vec<Color> = (0..6).map(|i| Color::rgb(i * 10, i, 255 - i)).collect();
+        let columns = Lanes::new([0.0, 1.0, 2.0, 0.0, 1.0, 2.0, 1.0, 0.0]);
+        let rows = Lanes::new([0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 0.0, 1.0]);
+        let [red, ..] = Lanes::look_up_color(columns, rows, 3, &colors);
+        assert_eq!(red.to_array(), [0.0, 10.0, 20.0, 30.0, 40.0, 50.0, 10.0, 30.0]);
+    }
+}

@@ -1,0 +1,342 @@
+//! The front end: from vertices to lists of triangles for each tile. All of it runs on all threads.
+
+use arrayvec::ArrayVec;
+use rayon::prelude::*;
+use wide::f32x8;
+
+use super::{TILE_HEIGHT, TILE_WIDTH};
+use crate::Rect;
+use crate::area::Winding;
+use crate::clip::{ClipVertex, NdcVertex, Plane, clip_triangle, fan};
+use crate::edge::{SUBPIXELS, cut_to_guard_band, is_in_guard_band, snap};
+use crate::interpolate::Interpolation;
+use crate::lanes::LANES;
+use crate::mesh::Mesh;
+use crate::pipeline::RenderState;
+use crate::shader::Shader;
+use crate::transform::Viewport;
+use crate::varyings::CornerVaryings;
+
+/// A place on the screen in 1/256 pixel.
+pub(super) type Place = [i32; 2];
+
+/// Where triangles come from.
+pub(super) enum Source<'a, S: Shader<N>, const N: usize> {
+    /// A mesh: all stages are still to be done.
+    Mesh(&'a Mesh<S::Attributes>),
+    /// Triangles that have been clipped and divided.
+    Pieces(&'a [[NdcVertex<N>; 3]]),
+}
+
+/// Vertices, made ready for all triangles that share them.
+#[derive(Debug, Default)]
+struct Vertices {
+    places: Vec<Place>,
+    /// Which planes a vertex lies outside of, a bit each; and the two bits below.
+    outside: Vec<u8>,
+    /// 1/ω, depth, V/ω: as many blocks of eight numbers for a vertex as it takes.
+    records: Vec<f32x8>,
+}
+
+/// The vertex is not finite, or too far away: no triangle of it is drawn.
+const NOWHERE: u8 = 1 << 6;
+/// The vertex lies beyond the guard band.
+const BEYOND: u8 = 1 << 7;
+
+/// The triangles of a part of the mesh, and which tiles each of them may touch.
+#[derive(Debug, Default)]
+struct Chunk {
+    /// For each tile the numbers of triangles, in order.
+    bins: Vec<Vec<u32>>,
+    /// Pieces of clipped triangles, three vertices each.
+    extra: Vertices,
+}
+
+/// Marks the number of a piece among a chunk's own.
+const EXTRA: u32 = 1 << 31;
+
+/// How many triangles a chunk has at least.
+const CHUNK: usize = 4096;
+
+/// The working memory of the front end.
+#[derive(Debug, Default)]
+pub(super) struct Front {
+    vertices: Vertices,
+    chunks: Vec<Chunk>,
+    blocks: usize,
+    columns: usize,
+}
+
+/// A triangle as a tile needs it.
+#[derive(Clone, Copy)]
+pub(super) struct Triangle<'a> {
+    pub(super) places: [Place; 3],
+    pub(super) records: [&'a [f32x8]; 3],
+}
+
+/// What is the same for all vertices and triangles of a picture.
+struct Context<'a> {
+    state: &'a RenderState,
+    viewport: Viewport,
+    window: Rect,
+    planes: ArrayVec<Plane, 6>,
+    blocks: usize,
+    columns: usize,
+    tiles: usize,
+}
+
+impl Front {
+    /// Sorts the triangles of a source into tiles.
+    pub(super) fn prepare<S: Shader<N>, const N: usize>(
+        &mut self,
+        source: &Source<'_, S, N>,
+        shader: &S,
+        state: &RenderState,
+        window: Rect,
+    ) {
+        let tiles = |pixels: i32, side: i32| (pixels as usize).div_ceil(side as usize);
+        let (columns, rows) = (tiles(window.right, TILE_WIDTH), tiles(window.top, TILE_HEIGHT));
+        let context = Context {
+            state,
+            viewport: state.viewport_in(window),
+            window,
+            planes: state.clip_volume.planes(state.depth_range),
+            blocks: (N + 2).div_ceil(LANES),
+            columns,
+            tiles: columns * rows,
+        };
+        (self.blocks, self.columns) = (context.blocks, columns);
+        match source {
+            Source::Mesh(mesh) => {
+                self.vertices.shade(mesh, shader, &context);
+                self.bin(mesh.triangle_count(), &context, |vertices, chunk, number| {
+                    assemble(vertices, chunk, number, mesh, shader, &context);
+                });
+            }
+            Source::Pieces(pieces) => {
+                self.vertices.resize(0, context.blocks);
+                self.bin(pieces.len(), &context, |_, chunk, number| {
+                    chunk.add_piece(&pieces[number], &context);
+                });
+            }
+        }
+    }
+
+    /// Lets `assemble` put triangles into the chunks' bins, several chunks at a time.
+    fn bin(
+        &mut self,
+        triangles: usize,
+        context: &Context<'_>,
+        assemble: impl Fn(&Vertices, &mut Chunk, usize) + Sync,
+    ) {
+        let most = 4 * rayon::current_num_threads();
+        let count = triangles.div_ceil(CHUNK).clamp(1, most);
+        let size = triangles.div_ceil(count).max(1);
+        self.chunks.resize_with(count, Chunk::default);
+        let vertices = &self.vertices;
+        self.chunks.par_iter_mut().enumerate().for_each(|(i, chunk)| {
+            chunk.clear(context);
+            for number in i * size..((i + 1) * size).min(triangles) {
+                assemble(vertices, chunk, number);
+            }
+        });
+    }
+
+    /// The triangles that may touch a tile, in order.
+    pub(super) fn triangles_in<'a, S: Shader<N>, const N: usize>(
+        &'a self,
+        source: &'a Source<'_, S, N>,
+        [column, row]: [usize; 2],
+    ) -> impl Iterator<Item = Triangle<'a>> {
+        let tile = row * self.columns + column;
+        self.chunks.iter().flat_map(move |chunk| {
+            chunk.bins[tile].iter().map(move |&number| match source {
+                Source::Mesh(mesh) if number & EXTRA == 0 => {
+                    self.vertices.triangle(mesh.triangle(number as usize), self.blocks)
+                }
+                _ => {
+                    let first = 3 * (number & !EXTRA) as usize;
+                    chunk.extra.triangle([first, first + 1, first + 2], self.blocks)
+                }
+            })
+        })
+    }
+}
+
+impl Vertices {
+    fn resize(&mut self, count: usize, blocks: usize) {
+        self.places.resize(count, [0; 2]);
+        self.outside.resize(count, 0);
+        self.records.resize(count * blocks, f32x8::ZERO);
+    }
+
+    // ANCHOR: shade_vertices
+    /// Shades, projects and snaps every vertex once.
+    fn shade<S: Shader<N>, const N: usize>(
+        &mut self,
+        mesh: &Mesh<S::Attributes>,
+        shader: &S,
+        context: &Context<'_>,
+    ) {
+        const PART: usize = 1024;
+        self.resize(mesh.vertices().len(), context.blocks);
+        let places = self.places.par_chunks_mut(PART);
+        let parts = places.zip(self.outside.par_chunks_mut(PART));
+        let parts = parts.zip(self.records.par_chunks_mut(PART * context.blocks));
+        parts.zip(mesh.vertices().par_chunks(PART)).for_each(|(((places, outside), records), attributes)| {
+            let slots = places.iter_mut().zip(outside).zip(records.chunks_exact_mut(context.blocks));
+            for (attributes, ((place, outside), record)) in attributes.iter().zip(slots) {
+                let clip = shader.vertex(attributes);
+                *outside = outside_of(&clip, context);
+                let ndc = NdcVertex::from(clip);
+                if *outside == 0 {
+                    match context.place_of(&ndc) {
+                        _ if !is_in_guard_band(&ndc) => *outside = BEYOND,
+                        None => *outside = NOWHERE,
+                        Some(seen) => *place = seen,
+                    }
+                }
+                write_record(&ndc, context.state.interpolation, record);
+            }
+        });
+    }
+    // ANCHOR_END: shade_vertices
+
+    fn triangle(&self, corners: [usize; 3], blocks: usize) -> Triangle<'_> {
+        Triangle {
+            places: corners.map(|corner| self.places[corner]),
+            records: corners.map(|corner| &self.records[corner * blocks..(corner + 1) * blocks]),
+        }
+    }
+}
+
+/// Which planes a vertex lies outside of.
+fn outside_of<const N: usize>(vertex: &ClipVertex<N>, context: &Context<'_>) -> u8 {
+    if !vertex.position.is_finite() {
+        return NOWHERE;
+    }
+    let mut outside = 0;
+    for (i, plane) in context.planes.iter().enumerate() {
+        let is_inside = context.state.clip_test.signed_distance(plane, vertex.position) >= 0.0;
+        outside |= u8::from(!is_inside) << i;
+    }
+    outside
+}
+
+impl Context<'_> {
+    /// Where on the screen a vertex is, if it is near enough.
+    fn place_of<const N: usize>(&self, vertex: &NdcVertex<N>) -> Option<Place> {
+        snap(self.viewport.pixel_areas(vertex.position)).map(|place| place.map(|c| c as i32))
+    }
+}
+
+fn write_record<const N: usize>(vertex: &NdcVertex<N>, interpolation: Interpolation, record: &mut [f32x8]) {
+    let corner = CornerVaryings::<f32, N>::new(vertex, interpolation);
+    let mut numbers = [corner.distance, corner.depth].into_iter().chain(corner.values);
+    for block in record {
+        *block = f32x8::new(std::array::from_fn(|_| numbers.next().unwrap_or(0.0)));
+    }
+}
+
+// ANCHOR: assemble
+/// Brings a triangle of the mesh into the bins: as it is, if it lies inside all planes, else in pieces.
+fn assemble<S: Shader<N>, const N: usize>(
+    vertices: &Vertices,
+    chunk: &mut Chunk,
+    number: usize,
+    mesh: &Mesh<S::Attributes>,
+    shader: &S,
+    context: &Context<'_>,
+) {
+    let corners = mesh.triangle(number);
+    let outside = corners.map(|corner| vertices.outside[corner]);
+    let (any, all) = (outside[0] | outside[1] | outside[2], outside[0] & outside[1] & outside[2]);
+    let beyond_a_plane = all & !(NOWHERE | BEYOND) != 0;
+    if any == 0 {
+        chunk.add(number as u32, corners.map(|corner| vertices.places[corner]), context);
+    } else if any & NOWHERE == 0 && !beyond_a_plane {
+        // Clipping is rare, and needs the vertex as it was: shade it once more.
+        let triangle = corners.map(|corner| shader.vertex(&mesh.vertices()[corner]));
+        let polygon = clip_triangle(triangle, &context.planes, context.state.clip_test);
+        let divided: ArrayVec<NdcVertex<N>, 9> = polygon.into_iter().map(NdcVertex::from).collect();
+        for piece in fan(divided) {
+            chunk.add_piece(&piece, context);
+        }
+    }
+}
+// ANCHOR_END: assemble
+
+impl Chunk {
+    fn clear(&mut self, context: &Context<'_>) {
+        self.bins.resize_with(context.tiles, Vec::new);
+        self.bins.iter_mut().for_each(Vec::clear);
+        self.extra.resize(0, context.blocks);
+    }
+
+    /// Adds a piece with vertices of its own.
+    fn add_piece<const N: usize>(&mut self, piece: &[NdcVertex<N>; 3], context: &Context<'_>) {
+        if piece.iter().all(is_in_guard_band) {
+            self.add_vertices(piece, context);
+        } else {
+            for piece in fan(cut_to_guard_band(*piece)) {
+                self.add_vertices(&piece, context);
+            }
+        }
+    }
+
+    fn add_vertices<const N: usize>(&mut self, piece: &[NdcVertex<N>; 3], context: &Context<'_>) {
+        let first = self.extra.places.len();
+        let [Some(a), Some(b), Some(c)] = piece.each_ref().map(|vertex| context.place_of(vertex)) else {
+            return;
+        };
+        let places = [a, b, c];
+        self.extra.resize(first + 3, context.blocks);
+        for (i, vertex) in piece.iter().enumerate() {
+            self.extra.places[first + i] = places[i];
+            let record = (first + i) * context.blocks..(first + i + 1) * context.blocks;
+            write_record(vertex, context.state.interpolation, &mut self.extra.records[record]);
+        }
+        self.add(EXTRA | (first / 3) as u32, places, context);
+    }
+
+    // ANCHOR: bin
+    /// Puts a triangle into the bins of the tiles that its bounding box touches, if it is seen at all.
+    fn add(&mut self, number: u32, places: [Place; 3], context: &Context<'_>) {
+        let area = signed_area(places);
+        let winding = if area > 0 { Winding::CounterClockwise } else { Winding::Clockwise };
+        if area == 0 || context.state.cull.culls_winding(winding, context.state.front_face) {
+            return;
+        }
+        let Some(Rect { left, bottom, right, top }) = bounding_box(places, context.window) else { return };
+        for row in bottom / TILE_HEIGHT..=(top - 1) / TILE_HEIGHT {
+            for column in left / TILE_WIDTH..=(right - 1) / TILE_WIDTH {
+                self.bins[row as usize * context.columns + column as usize].push(number);
+            }
+        }
+    }
+    // ANCHOR_END: bin
+}
+
+/// Twice the area of a triangle in 1/256 × 1/256 pixel, positive against the clock.
+pub(super) fn signed_area([a, b, c]: [Place; 3]) -> i64 {
+    let difference = |to: Place, axis: usize| i64::from(to[axis]) - i64::from(a[axis]);
+    difference(b, 0) * difference(c, 1) - difference(b, 1) * difference(c, 0)
+}
+
+/// The pixels of the window whose centers lie in the bounding box; `None` if there are none.
+pub(super) fn bounding_box([a, b, c]: [Place; 3], window: Rect) -> Option<Rect> {
+    const PIXEL: i32 = SUBPIXELS as i32;
+    let range = |axis: usize| {
+        let (low, high) = (a[axis].min(b[axis]).min(c[axis]), a[axis].max(b[axis]).max(c[axis]));
+        // The first center not below `low`, and the one after the last not above `high`; shifts round down.
+        ((low + PIXEL / 2 - 1) >> 8, ((high - PIXEL / 2) >> 8) + 1)
+    };
+    let ((left, right), (bottom, top)) = (range(0), range(1));
+    let rect = Rect {
+        left: left.max(window.left),
+        bottom: bottom.max(window.bottom),
+        right: right.min(window.right),
+        top: top.min(window.top),
+    };
+    (rect.left < rect.right && rect.bottom < rect.top).then_some(rect)
+}

@@ -1,0 +1,159 @@
+//! Beyond the book: the fast rasterizer. What [`Exact`](crate::edge::Exact) draws in `f32`, to the last bit, in a
+//! fraction of the time.
+//!
+//! Four things make the difference, and each is a file: eight fragments are shaded at a time
+//! ([`lanes`](crate::lanes)); every vertex is made ready once, however many triangles share it, and triangles that turn
+//! away are gone before anything is reckoned for them (`front.rs`); triangles are sorted into *tiles*, rectangles of
+//! the picture that fit into the processor's nearest memory, so that no two threads ever write to the same place
+//! (`bins`, in `front.rs`); and within a tile, triangles that cover only a few pixels share the eight lanes with others
+//! (`tile.rs`).
+//!
+//! ```text
+//!   vertices ──► shaded, divided, ──► triangles: culled, ──► bins: for each tile, ──► tiles: coverage, depth,
+//!                snapped once         clipped if need be     which triangles         eight fragments at a time
+//!   (all threads)                     (all threads)                                   (all threads, rows of tiles)
+//! ```
+//!
+//! Within a tile triangles keep their order: the picture does not depend on the number of threads, which is that of the
+//! `rayon` pool in which it is called.
+//!
+//! ```
+//! use glam::{DVec4, dvec4};
+//! use rasterbook::Color;
+//! use rasterbook::clip::ClipVertex;
+//! use rasterbook::depth::Target;
+//! use rasterbook::mesh::Mesh;
+//! use rasterbook::pipeline::{RenderState, draw};
+//! use rasterbook::probe::Silent;
+//! use rasterbook::real::Real;
+//! use rasterbook::shader::{Shaded, Shader};
+//! use rasterbook::tiled::Tiled;
+//!
+//! struct Red;
+//!
+//! impl Shader<0> for Red {
+//!     type Attributes = DVec4;
+//!     fn vertex(&self, clip: &DVec4) -> ClipVertex<0> {
+//!         ClipVertex { position: *clip, varyings: [] }
+//!     }
+//!     fn fragment<R: Real>(&self, _: [R; 0]) -> Shaded<R> {
+//!         Shaded::opaque([255.0, 0.0, 0.0].map(R::of))
+//!     }
+//! }
+//!
+//! let mesh = Mesh::unindexed(vec![dvec4(-1.0, -1.0, 0.0, 1.0), dvec4(3.0, -1.0, 0.0, 1.0), dvec4(-1.0, 3.0, 0.0, 1.0)])?;
+//! let mut target = Target::<f32>::sized(640, 480);
+//! target.clear(Color::BLACK, 1.0);
+//! draw(&mesh, &Red, &RenderState::default(), &Tiled::new(), &mut target, &Silent);
+//! assert_eq!(target.color.get(639, 479), Some(Color::RED));
+//! # Ok::<(), rasterbook::mesh::MeshError>(())
+//! ```
+//!
+//! Sources: J. Pineda, A parallel algorithm for polygon rasterization, 1988; M. Abrash, Rasterization on Larrabee, 2009;
+//! S. Laine and T. Karras, High-performance software rasterization on GPUs, 2011.
+
+mod front;
+mod tile;
+
+use std::sync::Mutex;
+
+use rayon::prelude::*;
+
+use crate::Rect;
+use crate::clip::NdcVertex;
+use crate::depth::Target;
+use crate::mesh::Mesh;
+use crate::pipeline::RenderState;
+use crate::probe::Probe;
+use crate::raster::Rasterizer;
+use crate::shader::Shader;
+
+use front::{Front, Source};
+use tile::{Frame, Tile};
+
+/// The width of a tile in pixels, a multiple of the lanes.
+const TILE_WIDTH: i32 = 64;
+/// The height of a tile in pixels.
+const TILE_HEIGHT: i32 = 32;
+
+/// The fast rasterizer. It keeps its working memory from picture to picture: make one and use it again.
+///
+/// Computes in `f32`. Probes hear nothing of it: [`Exact`](crate::edge::Exact) draws the same and tells.
+#[derive(Debug, Default)]
+pub struct Tiled {
+    front: Mutex<Front>,
+}
+
+impl Tiled {
+    /// The rasterizer, without working memory yet.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    fn draw_source<S: Shader<N>, const N: usize>(
+        &self,
+        source: &Source<'_, S, N>,
+        shader: &S,
+        state: &RenderState,
+        target: &mut Target<f32>,
+    ) {
+        let window = target.color.rect();
+        // Two pictures at a time do not share working memory.
+        let mut own = Front::default();
+        let mut shared = self.front.try_lock();
+        let front = shared.as_deref_mut().unwrap_or(&mut own);
+        front.prepare(source, shader, state, window);
+        draw_tiles(&Frame { shader, state, front, source }, window, target);
+    }
+}
+
+// ANCHOR: tiles
+/// Draws all tiles; a row of tiles is a part of the picture that belongs to one thread alone.
+fn draw_tiles<S: Shader<N>, const N: usize>(frame: &Frame<'_, S, N>, window: Rect, target: &mut Target<f32>) {
+    let width = window.right as usize;
+    let band = width * TILE_HEIGHT as usize;
+    let (colors, depths) = (target.color.pixels_mut(), target.depth.values_mut());
+    let bands = colors.par_chunks_mut(band).zip(depths.par_chunks_mut(band)).enumerate();
+    bands.for_each(|(row, (colors, depths))| {
+        let bottom = row as i32 * TILE_HEIGHT;
+        for (column, left) in (0..window.right).step_by(TILE_WIDTH as usize).enumerate() {
+            let (right, top) =
+                ((left + TILE_WIDTH).min(window.right), (bottom + TILE_HEIGHT).min(window.top));
+            let rect = Rect { left, bottom, right, top };
+            let mut tile = Tile::new(rect, width, colors, depths);
+            for triangle in frame.front.triangles_in(frame.source, [column, row]) {
+                tile.draw(frame, triangle);
+            }
+            tile.finish(frame);
+        }
+    });
+}
+// ANCHOR_END: tiles
+
+impl Rasterizer for Tiled {
+    type Depth = f32;
+
+    fn draw<S: Shader<N>, P: Probe + ?Sized, const N: usize>(
+        &self,
+        triangles: impl Iterator<Item = [NdcVertex<N>; 3]>,
+        state: &RenderState,
+        shader: &S,
+        target: &mut Target<f32>,
+        _: &P,
+    ) {
+        let pieces: Vec<[NdcVertex<N>; 3]> = triangles.collect();
+        self.draw_source(&Source::Pieces(&pieces), shader, state, target);
+    }
+
+    fn draw_mesh<S: Shader<N>, const N: usize>(
+        &self,
+        mesh: &Mesh<S::Attributes>,
+        shader: &S,
+        state: &RenderState,
+        target: &mut Target<f32>,
+    ) -> bool {
+        self.draw_source(&Source::Mesh(mesh), shader, state, target);
+        true
+    }
+}
