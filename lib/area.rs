@@ -31,6 +31,7 @@ pub const EPSILON: f64 = 1e-15;
 /// The book leaves out the division by two (section 2.2): only zero and the sign matter. The order of the six
 /// products is the book's, so that rounding is too.
 #[must_use]
+#[inline]
 pub fn twice_signed_area(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     a.x * b.y + b.x * c.y + c.x * a.y - a.x * c.y - b.x * a.y - c.x * b.y
 }
@@ -38,6 +39,7 @@ pub fn twice_signed_area(a: DVec2, b: DVec2, c: DVec2) -> f64 {
 
 /// Whether a triangle of this (doubled) area has anything to draw: not degenerate, and made of finite numbers.
 #[must_use]
+#[inline]
 pub fn is_drawable(twice_area: f64) -> bool {
     twice_area.is_finite() && twice_area.abs() >= EPSILON
 }
@@ -54,6 +56,7 @@ pub enum Winding {
 impl Winding {
     /// The winding that belongs to a signed area; `None` for zero and NaN.
     #[must_use]
+    #[inline]
     pub fn of(signed_area: f64) -> Option<Self> {
         if signed_area > 0.0 {
             Some(Self::CounterClockwise)

@@ -32,6 +32,7 @@ pub struct ClipVertex<const N: usize> {
 
 impl<const N: usize> ClipVertex<N> {
     /// The point at the parameter t between two vertices; position and values change evenly.
+    #[inline]
     fn between(a: Self, b: Self, t: f64) -> Self {
         Self {
             position: a.position + (b.position - a.position) * t,
@@ -85,6 +86,7 @@ impl Plane {
 
     /// How far inside a point is; negative outside.
     #[must_use]
+    #[inline]
     pub fn signed_distance(&self, position: DVec4) -> f64 {
         self.normal.dot(position) + self.offset
     }
@@ -107,6 +109,7 @@ pub enum ClipTest {
 }
 
 impl ClipTest {
+    #[inline]
     pub(crate) fn signed_distance(self, plane: &Plane, position: DVec4) -> f64 {
         match self {
             Self::BeforeDivide => plane.signed_distance(position),
@@ -250,6 +253,7 @@ pub struct NdcVertex<const N: usize> {
 }
 
 impl<const N: usize> From<ClipVertex<N>> for NdcVertex<N> {
+    #[inline]
     fn from(vertex: ClipVertex<N>) -> Self {
         let position = crate::transform::perspective_divide(vertex.position);
         Self { position, w: vertex.position.w, varyings: vertex.varyings }
@@ -257,12 +261,14 @@ impl<const N: usize> From<ClipVertex<N>> for NdcVertex<N> {
 }
 
 impl<'a, const N: usize> From<&'a ClipVertex<N>> for Vertex<'a> {
+    #[inline]
     fn from(vertex: &'a ClipVertex<N>) -> Self {
         Self { position: vertex.position, varyings: &vertex.varyings }
     }
 }
 
 impl<'a, const N: usize> From<&'a NdcVertex<N>> for Vertex<'a> {
+    #[inline]
     fn from(vertex: &'a NdcVertex<N>) -> Self {
         Self { position: vertex.position.extend(vertex.w), varyings: &vertex.varyings }
     }

@@ -31,16 +31,19 @@ impl CullMode {
     ///
     /// A triangle without area counts as seen from behind, as in Direct3D (11.3 functional specification, 15.11.1).
     #[must_use]
+    #[inline]
     pub fn culls(self, signed_area: f64, front: Winding) -> bool {
         self.culls_facing(Winding::of(signed_area) == Some(front))
     }
 
     /// The same for a triangle of this winding.
     #[must_use]
+    #[inline]
     pub fn culls_winding(self, winding: Winding, front: Winding) -> bool {
         self.culls_facing(winding == front)
     }
 
+    #[inline]
     const fn culls_facing(self, is_front: bool) -> bool {
         match self {
             Self::None => false,

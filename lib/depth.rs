@@ -36,6 +36,7 @@ pub enum DepthTest {
 impl DepthTest {
     /// Whether a fragment at `depth` passes against the stored one. NaN passes only `Always`.
     #[must_use]
+    #[inline]
     pub fn passes<D: PartialOrd>(self, depth: D, stored: D) -> bool {
         match self {
             Self::Less => depth < stored,
@@ -87,6 +88,7 @@ impl DepthEncoding {
 
     /// Whether it changes evenly on the screen, and so needs no correction. Book, section 7.5.1.
     #[must_use]
+    #[inline]
     pub const fn is_linear_on_screen(self) -> bool {
         match self {
             Self::ViewZ => false,
@@ -140,6 +142,7 @@ impl<D: Scalar> DepthBuffer<D> {
 
     /// The depth of the pixel (x, y); `None` outside.
     #[must_use]
+    #[inline]
     pub fn get(&self, x: i32, y: i32) -> Option<D> {
         self.rect.index(x, y).map(|index| self.values[index])
     }
@@ -152,6 +155,7 @@ impl<D: Scalar> DepthBuffer<D> {
 
     // ANCHOR: test_and_set
     /// Whether a fragment at (x, y) passes the test; if so, its depth replaces the stored one. Outside nothing passes.
+    #[inline]
     pub fn test_and_set(&mut self, x: i32, y: i32, depth: D, test: DepthTest) -> bool {
         let Some(index) = self.rect.index(x, y) else { return false };
         let passes = test.passes(depth, self.values[index]);

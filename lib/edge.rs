@@ -75,12 +75,14 @@ pub type Subpixel = [i64; 2];
 
 /// The center of the pixel (x, y).
 #[must_use]
+#[inline]
 pub fn center(x: i32, y: i32) -> Subpixel {
     [x, y].map(|i| i64::from(i) * SUBPIXELS + SUBPIXELS / 2)
 }
 
 /// Screen space, in pixels → the nearest place in 1/256 pixel; `None` if it is not finite or too far away.
 #[must_use]
+#[inline]
 pub fn snap(position: DVec2) -> Option<Subpixel> {
     let is_near = position.abs().max_element() <= FARTHEST && !position.is_nan();
     is_near.then(|| position.to_array().map(|c| (c * SUBPIXELS as f64).round() as i64))
@@ -110,6 +112,7 @@ pub struct EdgeFunction {
 impl EdgeFunction {
     /// The function of the edge from a to b.
     #[must_use]
+    #[inline]
     pub fn new(a: Subpixel, b: Subpixel) -> Self {
         let (step_x, step_y) = (a[1] - b[1], b[0] - a[0]);
         Self { step_x, step_y, constant: -(step_x * a[0] + step_y * a[1]) }
@@ -117,6 +120,7 @@ impl EdgeFunction {
 
     /// Its value at a point.
     #[must_use]
+    #[inline]
     pub fn at(&self, [x, y]: Subpixel) -> i64 {
         self.step_x * x + self.step_y * y + self.constant
     }
@@ -133,6 +137,7 @@ impl EdgeFunction {
     ///           bottom
     /// ```
     #[must_use]
+    #[inline]
     pub fn is_top_left(&self) -> bool {
         let (runs_down, is_level, runs_left) = (self.step_x > 0, self.step_x == 0, self.step_y < 0);
         runs_down || (is_level && runs_left)
@@ -140,6 +145,7 @@ impl EdgeFunction {
 
     /// Whether a point at which the function has this value is on the triangle's side.
     #[must_use]
+    #[inline]
     pub fn covers(&self, value: i64) -> bool {
         value > 0 || (value == 0 && self.is_top_left())
     }
@@ -164,6 +170,7 @@ impl Coverage {
     /// Screen space, in pixels → coverage; `None` if there is nothing to draw: no area, or a vertex that is not finite or
     /// too far away.
     #[must_use]
+    #[inline]
     pub fn new(corners: [DVec2; 3]) -> Option<Self> {
         let [a, b, c] = [snap(corners[0])?, snap(corners[1])?, snap(corners[2])?];
         let signed_area = EdgeFunction::new(a, b).at(c);
@@ -178,12 +185,14 @@ impl Coverage {
 
     /// The values of the three edge functions at a point.
     #[must_use]
+    #[inline]
     pub fn edge_values(&self, point: Subpixel) -> [i64; 3] {
         self.edges.map(|edge| edge.at(point))
     }
 
     /// Whether a point where the edge functions have these values belongs to the triangle: three signs that agree.
     #[must_use]
+    #[inline]
     pub fn covers(&self, values: [i64; 3]) -> bool {
         self.edges[0].covers(values[0]) && self.edges[1].covers(values[1]) && self.edges[2].covers(values[2])
     }
@@ -191,6 +200,7 @@ impl Coverage {
     /// How much the second and the third vertex weigh where the edge functions have these values; the first has the
     /// rest of 1. Outside the triangle, weights are negative.
     #[must_use]
+    #[inline]
     pub fn weights<R: Scalar>(&self, [_, second, third]: [i64; 3]) -> [R; 2] {
         // Whole numbers of up to 53 bits are exact in f64; `of` rounds once.
         let one_over_area = R::of(1.0) / R::of(self.twice_area as f64);
@@ -212,6 +222,7 @@ impl Coverage {
 
     /// The pixels of the window whose centers lie in the bounding box of the triangle.
     #[must_use]
+    #[inline]
     pub fn bounding_box(&self, window: Rect) -> Rect {
         let [xs, ys] = [0, 1].map(|axis| self.vertices.map(|vertex| vertex[axis]));
         // The first center that is not below the lowest, and the one after the last that is not above the highest.
@@ -262,6 +273,7 @@ struct Announced {
 }
 
 impl Announced {
+    #[inline]
     fn new(window: Window, coverage: &Coverage) -> Self {
         window.tell(|probe| probe.coverage(coverage));
         Self { window, coverage: *coverage }
@@ -283,6 +295,7 @@ pub struct Exact<R>(PhantomData<R>);
 impl<R: Scalar> Exact<R> {
     /// The rasterizer.
     #[must_use]
+    #[inline]
     pub const fn new() -> Self {
         Self(PhantomData)
     }
@@ -315,6 +328,7 @@ impl<R: Scalar> Rasterizer for Exact<R> {
 /// How far beyond the border of the view a vertex may be, in NDC.
 const GUARD_BAND: f64 = 2.0;
 
+#[inline]
 pub(crate) fn is_in_guard_band<const N: usize>(vertex: &NdcVertex<N>) -> bool {
     vertex.w > 0.0 && vertex.position.truncate().abs().max_element() <= GUARD_BAND
 }

@@ -37,6 +37,7 @@ impl Color {
 
     /// The color with the given channels, each in 0..=255.
     #[must_use]
+    #[inline]
     pub const fn rgb(red: u8, green: u8, blue: u8) -> Self {
         Self((red as u32) << 16 | (green as u32) << 8 | blue as u32)
     }
@@ -49,18 +50,21 @@ impl Color {
 
     /// The word 0x00RRGGBB.
     #[cfg(feature = "tiled")]
+    #[inline]
     pub(crate) const fn bits(self) -> u32 {
         self.0
     }
 
-    /// The color of a word 0x00RRGGBB.
+    /// The color of a word; its highest byte must be 0.
     #[cfg(feature = "tiled")]
+    #[inline]
     pub(crate) const fn from_bits(bits: u32) -> Self {
-        Self(bits & 0x00FF_FFFF)
+        Self(bits)
     }
 
     /// The channels `[red, green, blue]`.
     #[must_use]
+    #[inline]
     pub const fn channels(self) -> [u8; 3] {
         let [_, red, green, blue] = self.0.to_be_bytes();
         [red, green, blue]
@@ -68,12 +72,14 @@ impl Color {
 
     /// Channel values in 0.0..=255.0, fractions cut off as the book does; values outside are limited, NaN gives 0.
     #[must_use]
+    #[inline]
     pub fn truncated([red, green, blue]: [f64; 3]) -> Self {
         Self::rgb(red as u8, green as u8, blue as u8)
     }
 
     /// The channels as numbers in 0.0..=255.0.
     #[must_use]
+    #[inline]
     pub fn to_f64(self) -> [f64; 3] {
         self.channels().map(f64::from)
     }
@@ -91,6 +97,7 @@ pub enum Rounding {
 impl Rounding {
     /// The color with channels in 0..=255; values outside are limited, NaN gives 0.
     #[must_use]
+    #[inline]
     pub fn color<R: Scalar>(self, channels: [R; 3]) -> Color {
         let half = match self {
             Self::Truncate => R::of(0.0),
@@ -132,6 +139,7 @@ impl Rect {
 
     /// Whether the pixel (x, y) belongs to the rectangle.
     #[must_use]
+    #[inline]
     pub const fn contains(self, x: i32, y: i32) -> bool {
         self.left <= x && x < self.right && self.bottom <= y && y < self.top
     }
@@ -139,6 +147,7 @@ impl Rect {
     /// Where the pixel (x, y) stands in a plane that holds the rectangle's rows one after the other, the lowest first;
     /// `None` outside.
     #[must_use]
+    #[inline]
     pub const fn index(self, x: i32, y: i32) -> Option<usize> {
         if self.contains(x, y) {
             let width = (self.right - self.left) as usize;
@@ -222,12 +231,14 @@ impl Framebuffer {
 
     /// All pixels.
     #[must_use]
+    #[inline]
     pub const fn rect(&self) -> Rect {
         Rect::sized(self.width, self.height)
     }
 
     // ANCHOR: addressing
     /// Gives the pixel (x, y) a color. Outside the framebuffer nothing happens.
+    #[inline]
     pub fn set(&mut self, x: i32, y: i32, color: Color) {
         if let Some(index) = self.rect().index(x, y) {
             self.pixels[index] = color;
@@ -240,6 +251,7 @@ impl Framebuffer {
 
     /// The color of the pixel (x, y); `None` outside.
     #[must_use]
+    #[inline]
     pub fn get(&self, x: i32, y: i32) -> Option<Color> {
         self.rect().index(x, y).map(|index| self.pixels[index])
     }

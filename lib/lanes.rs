@@ -17,7 +17,7 @@
 use std::array::from_fn;
 
 use bytemuck::cast;
-use wide::{CmpGe, CmpGt, CmpLe, CmpLt, f32x8, i32x8};
+use wide::{CmpEq, CmpGe, CmpGt, CmpLe, CmpLt, f32x8, i32x8, u32x8};
 
 use crate::Color;
 use crate::real::{Mask, Real};
@@ -33,14 +33,17 @@ pub type Lanes = f32x8;
 pub struct LaneMask(f32x8);
 
 impl Mask for LaneMask {
+    #[inline]
     fn all(answer: bool) -> Self {
         Self(f32x8::splat(f32::from_bits(if answer { u32::MAX } else { 0 })))
     }
 
+    #[inline]
     fn and(self, other: Self) -> Self {
         Self(self.0 & other.0)
     }
 
+    #[inline]
     fn not(self) -> Self {
         Self(self.0 ^ Self::all(true).0)
     }
@@ -48,35 +51,48 @@ impl Mask for LaneMask {
 
 impl LaneMask {
     /// The lanes from `start` up to, but not including, `end`.
+    #[inline]
     pub(crate) fn range(start: i32, end: i32) -> Self {
         let number = f32x8::new([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
         let (start, end) = (f32x8::splat(start as f32), f32x8::splat(end as f32));
         Self(number.cmp_ge(start) & number.cmp_lt(end))
     }
 
+    /// The lanes whose bit is set, the first lane in the lowest bit.
+    #[inline]
+    pub(crate) fn of_bits(bits: i32) -> Self {
+        let place = i32x8::new([1, 2, 4, 8, 16, 32, 64, 128]);
+        Self(cast((i32x8::splat(bits) & place).cmp_eq(place)))
+    }
+
     /// The lanes in which a number is negative.
+    #[inline]
     pub(crate) fn of_signs(numbers: i32x8) -> Self {
         let all_bits: i32x8 = numbers >> 31;
         Self(cast(all_bits))
     }
 
     /// `yes` in the lanes of the mask, `no` in the others.
+    #[inline]
     pub(crate) fn choose(self, yes: i32x8, no: i32x8) -> i32x8 {
         let mask: i32x8 = cast(self.0);
         mask.blend(yes, no)
     }
 
     /// A bit for each lane.
+    #[inline]
     pub(crate) fn bits(self) -> i32 {
         self.0.move_mask()
     }
 }
 
 /// Comparisons of eight depths.
+#[inline]
 pub(crate) fn is_less_or_equal(a: Lanes, b: Lanes) -> LaneMask {
     LaneMask(a.cmp_le(b))
 }
 
+#[inline]
 pub(crate) fn is_greater(a: Lanes, b: Lanes) -> LaneMask {
     LaneMask(a.cmp_gt(b))
 }
@@ -84,18 +100,22 @@ pub(crate) fn is_greater(a: Lanes, b: Lanes) -> LaneMask {
 impl Real for f32x8 {
     type Mask = LaneMask;
 
+    #[inline]
     fn of(value: f64) -> Self {
         Self::splat(value as f32)
     }
 
+    #[inline]
     fn min(self, other: Self) -> Self {
         self.fast_min(other)
     }
 
+    #[inline]
     fn max(self, other: Self) -> Self {
         self.fast_max(other)
     }
 
+    #[inline]
     fn floor(self) -> Self {
         if cfg!(any(target_feature = "sse4.1", not(target_arch = "x86_64"))) {
             return Self::floor(self);
@@ -107,22 +127,27 @@ impl Real for f32x8 {
         self.abs().cmp_lt(Self::splat(8_388_608.0)).blend(floor, self)
     }
 
+    #[inline]
     fn sqrt(self) -> Self {
         Self::sqrt(self)
     }
 
+    #[inline]
     fn is_less(self, other: Self) -> LaneMask {
         LaneMask(self.cmp_lt(other))
     }
 
+    #[inline]
     fn select(mask: LaneMask, yes: Self, no: Self) -> Self {
         mask.0.blend(yes, no)
     }
 
+    #[inline]
     fn map(self, function: impl Fn(f64) -> f64) -> Self {
         Self::new(self.to_array().map(|value| function(f64::from(value)) as f32))
     }
 
+    #[inline]
     fn look_up<const C: usize>(
         column: Self,
         row: Self,
@@ -133,22 +158,26 @@ impl Real for f32x8 {
         from_fn(|k| Self::new(from_fn(|lane| records[lane][k] as f32)))
     }
 
+    #[inline]
     fn look_up_color(column: Self, row: Self, width: u32, colors: &[Color]) -> [Self; 3] {
         let places = row.fast_trunc_int() * i32x8::splat(width as i32) + column.fast_trunc_int();
-        let places = places.to_array();
-        let found: [i32; LANES] =
-            from_fn(|lane| colors.get(places[lane] as usize).map_or(0, |color| color.bits() as i32));
+        let places: u32x8 = cast(places);
+        // One comparison for all eight keeps each of them inside.
+        let places = places.min(u32x8::splat(colors.len().saturating_sub(1) as u32)).to_array();
+        let found: [i32; LANES] = from_fn(|lane| colors[places[lane] as usize].bits() as i32);
         channels(i32x8::new(found))
     }
 }
 
 /// The channels of eight words 0x00RRGGBB, 0..=255.
+#[inline]
 pub(crate) fn channels(words: i32x8) -> [Lanes; 3] {
     let byte = i32x8::splat(0xFF);
     [(words >> 16) & byte, (words >> 8) & byte, words & byte].map(i32x8::round_float)
 }
 
 /// The words of eight colors, channels rounded to the nearest of 0..=255; NaN gives 0.
+#[inline]
 pub(crate) fn packed(color: [Lanes; 3]) -> i32x8 {
     let (zero, half, most) = (f32x8::splat(0.0), f32x8::splat(0.5), f32x8::splat(255.0));
     let [red, green, blue] =

@@ -22,12 +22,14 @@ type Vector<R> = [R; 3];
 
 /// a · b.
 #[must_use]
+#[inline]
 pub fn dot<R: Real>(a: Vector<R>, b: Vector<R>) -> R {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// The vector of length 1 in the same direction; not finite for the zero vector.
 #[must_use]
+#[inline]
 pub fn normalize<R: Real>(v: Vector<R>) -> Vector<R> {
     let length = dot(v, v).sqrt();
     v.map(|component| component / length)
@@ -45,6 +47,7 @@ pub fn normalize<R: Real>(v: Vector<R>) -> Vector<R> {
 ///
 /// Source: fourth note, Phong model.
 #[must_use]
+#[inline]
 pub fn reflect<R: Real>(normal: Vector<R>, to_light: Vector<R>) -> Vector<R> {
     let twice = R::of(2.0) * dot(normal, to_light);
     from_fn(|i| twice * normal[i] - to_light[i])
@@ -60,6 +63,7 @@ pub fn reflect<R: Real>(normal: Vector<R>, to_light: Vector<R>) -> Vector<R> {
 ///       ───────────────                             ────────────────────
 /// ```
 #[must_use]
+#[inline]
 pub fn lambert<R: Real>(normal: Vector<R>, to_light: Vector<R>) -> R {
     dot(normal, to_light).max(R::of(0.0))
 }
@@ -67,6 +71,7 @@ pub fn lambert<R: Real>(normal: Vector<R>, to_light: Vector<R>) -> R {
 
 /// How much of a point light's intensity arrives at a distance: 1 / r². Source: fourth note, Lambert model.
 #[must_use]
+#[inline]
 pub fn attenuation<R: Real>(distance: R) -> R {
     R::of(1.0) / (distance * distance)
 }

@@ -32,6 +32,7 @@ pub enum Blend {
 impl Blend {
     /// The new color from the fragment's (with opacity) and the one that is there; channels in 0..=255.
     #[must_use]
+    #[inline]
     pub fn apply<R: Real>(self, [red, green, blue, opacity]: [R; 4], there: [R; 3]) -> [R; 3] {
         let source = [red, green, blue];
         match self {
@@ -72,6 +73,7 @@ pub enum Verdict {
 
 // ANCHOR: merge
 /// Merges a fragment into the target at (x, y): depth test, blending, writing.
+#[inline]
 pub fn merge<R: Scalar>(
     target: &mut Target<R>,
     options: Merge,

@@ -83,12 +83,14 @@ impl<A> Mesh<A> {
 
     /// The attribute records.
     #[must_use]
+    #[inline]
     pub fn vertices(&self) -> &[A] {
         &self.vertices
     }
 
     /// How many triangles there are.
     #[must_use]
+    #[inline]
     pub fn triangle_count(&self) -> usize {
         self.indices.as_ref().map_or(self.vertices.len(), Vec::len) / 3
     }
@@ -104,6 +106,7 @@ impl<A> Mesh<A> {
     /// # Panics
     /// If there is no such triangle.
     #[must_use]
+    #[inline]
     pub fn triangle(&self, number: usize) -> [usize; 3] {
         let first = number * 3;
         match &self.indices {

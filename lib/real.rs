@@ -62,8 +62,8 @@ pub trait Real:
         row: Self,
         table: impl Fn(usize, usize) -> [f64; C],
     ) -> [Self; C];
-    /// The channels, 0..=255, of the color in a column and a row (whole numbers, not negative) of a plane of colors that
-    /// is so many columns wide. Outside the plane it is black.
+    /// The channels, 0..=255, of the color in a column and a row (not negative, fractions are cut off) of a plane of
+    /// colors that is so many columns wide. It must be inside the plane: outside, the answer is any color, or a panic.
     #[must_use]
     fn look_up_color(column: Self, row: Self, width: u32, colors: &[Color]) -> [Self; 3];
 }
@@ -87,14 +87,17 @@ pub trait Mask: Copy + Debug {
 }
 
 impl Mask for bool {
+    #[inline]
     fn all(answer: bool) -> Self {
         answer
     }
 
+    #[inline]
     fn and(self, other: Self) -> Self {
         self && other
     }
 
+    #[inline]
     fn not(self) -> Self {
         !self
     }
@@ -106,38 +109,47 @@ macro_rules! plain_number {
         impl Real for $number {
             type Mask = bool;
 
+            #[inline]
             fn of(value: f64) -> Self {
                 value as Self
             }
 
+            #[inline]
             fn min(self, other: Self) -> Self {
                 Self::min(self, other)
             }
 
+            #[inline]
             fn max(self, other: Self) -> Self {
                 Self::max(self, other)
             }
 
+            #[inline]
             fn floor(self) -> Self {
                 Self::floor(self)
             }
 
+            #[inline]
             fn sqrt(self) -> Self {
                 Self::sqrt(self)
             }
 
+            #[inline]
             fn is_less(self, other: Self) -> bool {
                 self < other
             }
 
+            #[inline]
             fn select(mask: bool, yes: Self, no: Self) -> Self {
                 if mask { yes } else { no }
             }
 
+            #[inline]
             fn map(self, function: impl Fn(f64) -> f64) -> Self {
                 function(f64::from(self)) as Self
             }
 
+            #[inline]
             fn look_up<const C: usize>(
                 column: Self,
                 row: Self,
@@ -146,9 +158,9 @@ macro_rules! plain_number {
                 table(column as usize, row as usize).map(Self::of)
             }
 
+            #[inline]
             fn look_up_color(column: Self, row: Self, width: u32, colors: &[Color]) -> [Self; 3] {
-                let color = colors.get(row as usize * width as usize + column as usize);
-                color.copied().unwrap_or_default().to_f64().map(Self::of)
+                colors[row as usize * width as usize + column as usize].to_f64().map(Self::of)
             }
         }
     };

@@ -63,6 +63,7 @@ pub trait Shader<const N: usize>: Sync {
 
     /// Varyings, and how they change from pixel to pixel → color: for filters, which need to know how much of a texture
     /// a pixel covers.
+    #[inline]
     fn fragment_with_derivatives<R: Real>(&self, varyings: [R; N], _: Derivatives<R, N>) -> Shaded<R> {
         self.fragment(varyings)
     }
@@ -80,18 +81,21 @@ pub struct Shaded<R: Real> {
 impl<R: Real> Shaded<R> {
     /// A fragment through which nothing shines; channels in 0..=255.
     #[must_use]
+    #[inline]
     pub fn opaque([red, green, blue]: [R; 3]) -> Self {
         Self::translucent([red, green, blue], R::of(1.0))
     }
 
     /// A fragment of some opacity, 0..=1.
     #[must_use]
+    #[inline]
     pub fn translucent([red, green, blue]: [R; 3], opacity: R) -> Self {
         Self { color: [red, green, blue, opacity], keep: R::Mask::all(true) }
     }
 
     /// The same, but not drawn where the mask says so.
     #[must_use]
+    #[inline]
     pub fn discard(self, mask: R::Mask) -> Self {
         Self { keep: self.keep.and(mask.not()), ..self }
     }

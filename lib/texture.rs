@@ -43,6 +43,7 @@ impl AddressMode {
     /// ```
     ///
     /// Whatever comes in, NaN too, what goes out is inside. Source: Direct3D 11.3 functional specification, 7.18.9.
+    #[inline]
     pub(crate) fn apply<R: Real>(self, index: R, count: R) -> R {
         let rest = |period: R| index - (index / period).floor() * period;
         let last = count - R::of(1.0);
@@ -59,13 +60,16 @@ impl AddressMode {
     }
     // ANCHOR_END: address_mode
 
-    /// The texel index in 0..count that a coordinate falls into: ⌊u · count⌋, and the address mode.
+    /// The texel index in 0..count that a coordinate falls into, perhaps with a fraction: ⌊u · count⌋, and the address
+    /// mode.
     ///
     /// Repeated, u is wrapped before it is scaled, as the book does: no division is needed.
+    #[inline]
     fn index<R: Real>(self, u: R, count: R) -> R {
         match self {
             Self::Clamp | Self::Mirror => self.apply((u * count).floor(), count),
-            Self::Repeat => Self::Clamp.apply(((u - u.floor()) * count).floor(), count),
+            // Not negative, so that cutting the fraction off later rounds down.
+            Self::Repeat => Self::Clamp.apply((u - u.floor()) * count, count),
         }
     }
 }
@@ -130,6 +134,7 @@ impl Texture {
     ///
     /// The book's early programs read past the array at u = 1; the address mode decides here.
     #[must_use]
+    #[inline]
     pub fn nearest<R: Real>(&self, [u, v]: [R; 2], mode: AddressMode) -> [R; 3] {
         let [width, height] = self.size();
         let column = mode.index(u, width);
@@ -140,15 +145,18 @@ impl Texture {
 
     /// The mixture of the four texels around (u, v), as channels in 0..=255.
     #[must_use]
+    #[inline]
     pub fn bilinear<R: Real>(&self, uv: [R; 2], mode: AddressMode) -> [R; 3] {
         bilinear(uv, self.size(), mode, |column, row| R::look_up_color(column, row, self.width, &self.texels))
     }
 
+    #[inline]
     fn size<R: Real>(&self) -> [R; 2] {
         [self.width, self.height].map(|side| R::of(f64::from(side)))
     }
 
     /// The channels of a texel, in 0..=255.
+    #[inline]
     pub(crate) fn texel(&self, column: usize, row: usize) -> [f64; 3] {
         self.texels[row * self.width as usize + column].to_f64()
     }
@@ -166,6 +174,7 @@ impl Texture {
 /// ```
 ///
 /// Source: Direct3D 11.3 functional specification, 7.18.8.
+#[inline]
 pub(crate) fn bilinear<R: Real>(
     [u, v]: [R; 2],
     [width, height]: [R; 2],

@@ -46,6 +46,7 @@ pub fn orthographic(view: DVec3) -> DVec4 {
 
 /// The perspective divide: homogeneous coordinates → (x/ω, y/ω, z/ω). Not finite for ω = 0.
 #[must_use]
+#[inline]
 pub fn perspective_divide(clip: DVec4) -> DVec3 {
     DVec3::new(clip.x / clip.w, clip.y / clip.w, clip.z / clip.w)
 }
@@ -185,6 +186,7 @@ impl Viewport {
     ///
     /// Source: book, section 8.2.
     #[must_use]
+    #[inline]
     pub fn pixel_corners(&self, ndc: DVec3) -> DVec2 {
         DVec2::new(
             self.x + (ndc.x + 1.0) / 2.0 * (self.width - 1.0),
@@ -206,6 +208,7 @@ impl Viewport {
     ///
     /// Source: Direct3D 11.3 functional specification, 3.3 and 15.6.
     #[must_use]
+    #[inline]
     pub fn pixel_areas(&self, ndc: DVec3) -> DVec2 {
         DVec2::new(self.x + (ndc.x + 1.0) / 2.0 * self.width, self.y + (ndc.y + 1.0) / 2.0 * self.height)
     }

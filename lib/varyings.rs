@@ -56,6 +56,7 @@ pub type WeightGradients<R> = [[R; 2]; 2];
 
 /// The gradients of the weights in a triangle on the screen, in pixels.
 #[must_use]
+#[inline]
 pub fn weight_gradients<R: Real>([a, b, c]: [DVec2; 3]) -> WeightGradients<R> {
     let area = twice_signed_area(a, b, c);
     [[c.y - a.y, a.y - b.y], [a.x - c.x, b.x - a.x]].map(|row| row.map(|change| R::of(change / area)))
@@ -70,14 +71,17 @@ struct Even<R> {
 }
 
 impl<R: Real> Even<R> {
+    #[inline]
     fn new([first, second, third]: [R; 3]) -> Self {
         Self { first, to_second: second - first, to_third: third - first }
     }
 
+    #[inline]
     fn at(&self, [second, third]: [R; 2]) -> R {
         self.first + self.to_second * second + self.to_third * third
     }
 
+    #[inline]
     fn change(&self, [second, third]: [R; 2]) -> R {
         self.to_second * second + self.to_third * third
     }
@@ -98,6 +102,7 @@ pub struct CornerVaryings<R, const N: usize> {
 impl<R: Real, const N: usize> CornerVaryings<R, N> {
     /// Divides what is to be interpolated by ω.
     #[must_use]
+    #[inline]
     pub fn new(vertex: &NdcVertex<N>, interpolation: Interpolation) -> Self {
         let (w, depth) = (R::of(vertex.w), R::of(vertex.position.z));
         let values = vertex.varyings.map(R::of);
@@ -112,6 +117,7 @@ impl<R: Real, const N: usize> CornerVaryings<R, N> {
 
     /// Multiplies by ω again: what was interpolated evenly becomes ω and values.
     #[must_use]
+    #[inline]
     pub fn multiplied(self, interpolation: Interpolation) -> Projected<R, N> {
         match interpolation {
             Interpolation::Affine => Projected { w: self.distance, values: self.values },
@@ -135,6 +141,7 @@ pub struct TriangleVaryings<R, const N: usize> {
 impl<R: Real, const N: usize> TriangleVaryings<R, N> {
     /// From the three vertices of a triangle.
     #[must_use]
+    #[inline]
     pub fn new(corners: &[NdcVertex<N>; 3], interpolation: Interpolation) -> Self {
         Self::between(
             corners.each_ref().map(|vertex| CornerVaryings::new(vertex, interpolation)),
@@ -144,6 +151,7 @@ impl<R: Real, const N: usize> TriangleVaryings<R, N> {
 
     /// From what the corners carry.
     #[must_use]
+    #[inline]
     pub fn between([a, b, c]: [CornerVaryings<R, N>; 3], interpolation: Interpolation) -> Self {
         Self {
             distance: Even::new([a.distance, b.distance, c.distance]),
@@ -155,14 +163,22 @@ impl<R: Real, const N: usize> TriangleVaryings<R, N> {
 
     /// ω and the varyings where the second and the third corner have these weights.
     #[must_use]
+    #[inline]
     pub fn at(&self, weights: [R; 2]) -> Projected<R, N> {
+        self.interpolated(weights, self.interpolation)
+    }
+
+    /// The same, if the kind of interpolation is known.
+    #[inline]
+    pub(crate) fn interpolated(&self, weights: [R; 2], interpolation: Interpolation) -> Projected<R, N> {
         let (distance, depth) = (self.distance.at(weights), R::of(0.0));
         let values = from_fn(|k| self.values[k].at(weights));
-        CornerVaryings { distance, depth, values }.multiplied(self.interpolation)
+        CornerVaryings { distance, depth, values }.multiplied(interpolation)
     }
 
     /// The depth there.
     #[must_use]
+    #[inline]
     pub fn depth_at(&self, weights: [R; 2]) -> R {
         self.depth.at(weights)
     }
@@ -171,6 +187,7 @@ impl<R: Real, const N: usize> TriangleVaryings<R, N> {
     ///
     /// From V = (V/ω) / (1/ω) by the quotient rule: ∂V = ω (∂(V/ω) − V ∂(1/ω)).
     #[must_use]
+    #[inline]
     pub fn derivatives(&self, point: &Projected<R, N>, [right, up]: WeightGradients<R>) -> Derivatives<R, N> {
         let along = |direction: [R; 2]| {
             let distance = self.distance.change(direction);

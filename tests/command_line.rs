@@ -188,7 +188,7 @@ fn the_history_of_a_pixel() {
     assert!(told.contains("affine ←") && told.ends_with("In the picture: (0, 255, 0)\n"), "{told}");
     assert!(!told.contains("What did not reach"), "only with -v");
     let more = text(&run_in(&folder, &["affine", "--inspect", "60,120", "-v"]).stdout);
-    assert!(more.contains("triangle 2: row 120"), "{more}");
+    assert!(more.contains("triangle 2: its row 120"), "{more}");
     let output = run_in(&folder, &["affine", "--inspect", "60,120", "--format", "json"]);
     let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
     assert_eq!((&json["variant"], &json["color"]), (&"affine".into(), &serde_json::json!([0, 255, 0])));

@@ -71,6 +71,11 @@ fn every_include_has_its_anchor_and_every_anchor_its_page() {
             let file = page.parent().expect("a folder").join(file);
             let file =
                 file.canonicalize().unwrap_or_else(|error| panic!("{}: {include}: {error}", page.display()));
+            // Pinned histories are included from the line after their header on.
+            if file.parent().is_some_and(|folder| folder.ends_with("tests/histories")) {
+                assert!(anchor.starts_with("4:"), "{}: {include} shows the header", page.display());
+                continue;
+            }
             let key = known
                 .iter()
                 .find(|(source, name)| name == anchor && source.canonicalize().ok().as_ref() == Some(&file));

@@ -16,6 +16,7 @@ use std::process::{Command, ExitCode};
 
 use chapters::CHAPTERS;
 use libtest_mimic::{Arguments, Failed, Trial};
+use rasterbook::program::Mistake;
 
 fn main() -> ExitCode {
     // A failed comparison is told once, by its test.
@@ -35,10 +36,13 @@ fn eprintln_page(page: &Path) {
 }
 
 /// A picture that some program can draw.
+#[derive(Clone)]
 struct Picture {
     program: &'static str,
     variant: &'static str,
     frame: Option<u32>,
+    /// Whether it is a mistake beside its remedy, and where they differ.
+    is_comparison: bool,
     name: String,
 }
 
@@ -53,12 +57,19 @@ fn all_pictures() -> impl Iterator<Item = Picture> {
             None => vec![None],
             Some(animation) => [0, animation.frames / 2, animation.frames - 1].map(Some).to_vec(),
         };
-        frames.into_iter().map(move |frame| Picture {
-            program,
-            variant: variant.name,
-            frame,
-            name: frame.map_or_else(|| name.clone(), |frame| format!("{name}@{frame:03}")),
-        })
+        let picture = Picture { program, variant: variant.name, frame: None, is_comparison: false, name };
+        let comparison = match variant.mistake {
+            Mistake::MendedBy(remedy) => {
+                let name = format!("{}--{remedy}", picture.name);
+                Some(Picture { is_comparison: true, name, ..picture.clone() })
+            }
+            Mistake::No | Mistake::Unmended => None,
+        };
+        let single = frames.into_iter().map(move |frame| {
+            let at = frame.map_or_else(String::new, |frame| format!("@{frame:03}"));
+            Picture { frame, name: format!("{}{at}", picture.name), ..picture.clone() }
+        });
+        single.chain(comparison)
     })
 }
 
@@ -77,6 +88,9 @@ impl Picture {
         command.arg(self.variant).arg("--out").arg(&file);
         if let Some(frame) = self.frame {
             command.arg("--frame").arg(frame.to_string());
+        }
+        if self.is_comparison {
+            command.arg("--compare");
         }
         let output = command.output()?;
         if !output.status.success() {

@@ -20,6 +20,7 @@ pub(super) enum Value {
     },
     /// Told to programs alone: for people it stands in a table.
     Group(Vec<Field>),
+    Groups(Vec<Vec<Field>>),
     List(Vec<String>),
 }
 
@@ -47,6 +48,14 @@ pub(super) struct Entry {
     pub(super) kind: &'static str,
     pub(super) title: String,
     pub(super) fields: Vec<Field>,
+    /// What happened each time that it met the pixel.
+    pub(super) hits: Vec<Vec<Field>>,
+}
+
+impl Entry {
+    pub(super) const fn new(kind: &'static str, title: String) -> Self {
+        Self { kind, title, fields: Vec::new(), hits: Vec::new() }
+    }
 }
 
 /// All that happened at a pixel. As text it is for people: 80 columns, rounded numbers.
@@ -80,7 +89,7 @@ fn rounded(number: f64) -> String {
     } else {
         // 101.9999999999995 is cut to 101, and must not look like 102.
         let below = number.round() - number;
-        if below > 0.0 && below < 1e-9 * size && size >= 1.0 {
+        if below > 0.0 && below < 1e-9 * size && number >= 1.0 {
             return format!("{}-{below:.0e}", number.round());
         }
         let decimals = if size >= 1000.0 { 2 } else { 4 };
@@ -137,7 +146,8 @@ const NAMES: usize = 16;
 fn write_entry(f: &mut fmt::Formatter<'_>, entry: &Entry) -> fmt::Result {
     writeln!(f)?;
     write_wrapped(f, "  ", 4, &entry.title)?;
-    for Field { label, value, .. } in entry.fields.iter().filter(|field| !field.label.is_empty()) {
+    let fields = entry.fields.iter().chain(entry.hits.iter().flatten());
+    for Field { label, value, .. } in fields.filter(|field| !field.label.is_empty()) {
         let lines = match value {
             Value::Number(number) => vec![rounded(*number)],
             Value::Whole(number) => vec![number.to_string()],
@@ -148,7 +158,7 @@ fn write_entry(f: &mut fmt::Formatter<'_>, entry: &Entry) -> fmt::Result {
                 vec![numbers.iter().map(|number| rounded(*number)).collect::<Vec<_>>().join("  ")]
             }
             Value::List(lines) => lines.clone(),
-            Value::Group(_) => continue,
+            Value::Group(_) | Value::Groups(_) => continue,
             Value::Table { columns, rows } => {
                 write_table(f, label, columns, rows)?;
                 continue;
@@ -200,12 +210,15 @@ impl History {
     #[must_use]
     pub fn to_json(&self) -> String {
         let mut json = String::new();
-        let entries = |entries: &[Entry]| entries.iter().map(entry_json).collect::<Vec<_>>().join(",\n    ");
+        let entries = |entries: &[Entry]| {
+            let lines: String = entries.iter().map(|entry| format!("\n    {},", entry_json(entry))).collect();
+            if lines.is_empty() { lines } else { format!("{}\n  ", lines.trim_end_matches(',')) }
+        };
         let frame = self.frame.map_or_else(|| "null".to_owned(), |frame| frame.to_string());
         let _ = write!(
             json,
             "{{\n  \"program\": {},\n  \"variant\": {},\n  \"frame\": {frame},\n  \"pixel\": [{}, {}],\n  \
-             \"row\": {},\n  \"events\": [\n    {}\n  ],\n  \"others\": [\n    {}\n  ],\n  \"color\": {}\n}}",
+             \"row\": {},\n  \"events\": [{}],\n  \"others\": [{}],\n  \"color\": {}\n}}",
             text_json(self.program),
             text_json(self.variant),
             self.pixel.0,
@@ -224,7 +237,12 @@ fn entry_json(entry: &Entry) -> String {
         hidden("kind", Value::Text(entry.kind.to_owned())),
         hidden("title", Value::Text(entry.title.clone())),
     ];
-    fields.extend(entry.fields.iter().filter(|field| !field.key.is_empty()).cloned());
+    let told =
+        |fields: &[Field]| fields.iter().filter(|field| !field.key.is_empty()).cloned().collect::<Vec<_>>();
+    fields.extend(told(&entry.fields));
+    if !entry.hits.is_empty() {
+        fields.push(hidden("hits", Value::Groups(entry.hits.iter().map(|hit| told(hit)).collect())));
+    }
     value_json(&Value::Group(fields))
 }
 
@@ -242,6 +260,9 @@ fn value_json(value: &Value) -> String {
         Value::Group(fields) => {
             let field = |field: &Field| format!("{}: {}", text_json(field.key), value_json(&field.value));
             format!("{{{}}}", fields.iter().map(field).collect::<Vec<_>>().join(", "))
+        }
+        Value::Groups(groups) => {
+            list(&mut groups.iter().map(|group| value_json(&Value::Group(group.clone()))))
         }
         Value::Table { columns, rows } => {
             let cell = |(column, cell): (&String, &Option<f64>)| {

@@ -64,13 +64,13 @@ impl History {
         let color = picture.get(pixel.0, pixel.1).unwrap_or_default();
         if !entries.iter().any(|entry| matches!(entry.kind, "line" | "half" | "triangle" | "painted")) {
             let title = "Nothing covers this pixel: it keeps the background".to_owned();
-            entries.push(Entry { kind: "background", title, fields: Vec::new() });
+            entries.push(Entry::new("background", title));
         }
         if color != told {
             let title = format!(
                 "Afterwards the program shows something else here, {color:?}: another buffer, or a line between enlarged pixels"
             );
-            entries.push(Entry { kind: "replaced", title, fields: Vec::new() });
+            entries.push(Entry::new("replaced", title));
         }
         let row = picture.height() as i32 - 1 - pixel.1;
         Self { program: "", variant: "", frame: None, pixel, row, entries, others, color, told }
@@ -91,6 +91,7 @@ fn explain(events: &[Event], pixel: Pixel, picture: Rect) -> Findings {
         is_open: false,
         hits: 0,
         is_hit_complete: true,
+        is_noting: false,
         culled: Vec::new(),
         clipped_away: Vec::new(),
         found: Findings::default(),
@@ -129,6 +130,8 @@ struct Teller<'a> {
     is_open: bool,
     hits: usize,
     is_hit_complete: bool,
+    /// Whether the last entry is one of notes.
+    is_noting: bool,
     /// Numbers of triangles that never reached the screen.
     culled: Vec<usize>,
     clipped_away: Vec<usize>,
@@ -149,9 +152,9 @@ impl<'a> Teller<'a> {
                 self.pieces += 1;
                 self.piece = Some((vertices, *area));
             }
-            Event::Culled => {
-                self.culled.push(self.number);
-            }
+            // Of a clipped triangle there may be several pieces.
+            Event::Culled if self.culled.last() == Some(&self.number) => {}
+            Event::Culled => self.culled.push(self.number),
             Event::Begun(primitive) => {
                 if self.assembled.is_none() {
                     self.number += 1;
@@ -164,6 +167,12 @@ impl<'a> Teller<'a> {
             }
             Event::Done => self.done(),
             Event::Noted(at, text) if *at == self.here() => {
+                if self.primitive.is_none() && !self.is_noting {
+                    let title = "What the program says of this pixel".to_owned();
+                    self.found.entries.push(Entry::new("note", title));
+                    (self.is_open, self.is_noting) = (true, true);
+                }
+                self.open(true);
                 self.add([field("note", "note", Value::Text(text.clone()))]);
             }
             Event::Tested { at, depth, stored, passed } if *at == self.here() => {
@@ -197,14 +206,14 @@ impl<'a> Teller<'a> {
             let title = format!(
                 "A screen of its own, each pixel drawn as {factor}×{factor}: what follows is its pixel ({x}, {y})"
             );
-            self.found.entries.push(Entry { kind: "enlarged", title, fields: Vec::new() });
+            self.found.entries.push(Entry::new("enlarged", title));
         }
     }
 
     fn clear(&mut self, color: Color) {
         self.found.color = color;
         let title = format!("The picture is cleared to {color:?}");
-        self.found.entries.push(Entry { kind: "cleared", title, fields: Vec::new() });
+        self.found.entries.push(Entry::new("cleared", title));
         self.end_triangle();
         // What was drawn before is gone, but not forgotten: triangles are counted anew.
         (self.number, self.assembled, self.piece) = (0, None, None);
@@ -220,15 +229,24 @@ impl<'a> Teller<'a> {
         Rect::sized(width, height)
     }
 
-    /// Adds to the entry of the running primitive.
-    fn add(&mut self, fields: impl IntoIterator<Item = Field>) {
+    /// Sees that the running primitive has an entry, and in it a hit, a new one if that is wanted.
+    fn open(&mut self, is_new_hit: bool) {
         if !self.is_open {
             let entry = self.entry();
             self.found.entries.push(entry);
             self.is_open = true;
         }
-        if let Some(entry) = self.found.entries.last_mut() {
-            entry.fields.extend(fields);
+        if let Some(entry) = self.found.entries.last_mut().filter(|entry| is_new_hit || entry.hits.is_empty())
+        {
+            entry.hits.push(Vec::new());
+        }
+    }
+
+    /// Adds to the entry of the running primitive.
+    fn add(&mut self, fields: impl IntoIterator<Item = Field>) {
+        self.open(false);
+        if let Some(hit) = self.found.entries.last_mut().and_then(|entry| entry.hits.last_mut()) {
+            hit.extend(fields);
         }
     }
 
@@ -239,16 +257,14 @@ impl<'a> Teller<'a> {
         }
         if self.primitive.is_none() {
             // Every write by the program itself is news.
-            self.is_open = false;
+            (self.is_open, self.is_noting) = (false, false);
         }
         let hit = self.hits;
         self.hits += 1;
+        self.open(true);
         if hit > 0 && self.primitive.is_some() {
-            self.add([field(
-                "",
-                "again",
-                Value::Text("the pixel belongs to both halves of the triangle".to_owned()),
-            )]);
+            let again = "the pixel belongs to both halves of the triangle".to_owned();
+            self.add([field("", "again", Value::Text(again))]);
         }
         let (here, screen) = (self.here(), self.screen());
         let fields = match self.primitive {
@@ -264,7 +280,7 @@ impl<'a> Teller<'a> {
     fn entry(&self) -> Entry {
         let Some(primitive) = self.primitive else {
             let title = "The program itself paints this pixel".to_owned();
-            return Entry { kind: "painted", title, fields: Vec::new() };
+            return Entry::new("painted", title);
         };
         let number = self.number;
         let (kind, title) = match primitive {
@@ -275,19 +291,27 @@ impl<'a> Teller<'a> {
         let mut fields = vec![field("number", "", Value::Whole(number as i64))];
         if let Some(assembled) = self.assembled {
             fields.extend(vertex_fields(assembled));
-            fields.extend(clip_fields(assembled));
-            fields.push(field("piece", "piece", Value::Whole(self.pieces as i64)));
+            let (clipping, names) = clip_fields(assembled);
+            fields.push(field("piece", "", Value::Whole(self.pieces as i64)));
+            if let Some(clipping) = clipping {
+                let corner = |i: usize| names.get(i).copied().unwrap_or('?');
+                let (k, count) = (self.pieces, names.len().saturating_sub(2));
+                let [a, b, c] = [corner(0), corner(k), corner(k + 1)];
+                let text = format!("{k} of {count}: {a}, {b} and {c} are called A, B and C from here on");
+                fields.extend([clipping, field("", "piece", Value::Text(text))]);
+            }
         }
         if let Some((vertices, area)) = self.piece {
             let rows = "ABC".chars().zip(vertices.iter());
             let rows = rows.map(|(name, v)| (name.to_string(), v.position.to_array().map(Some).to_vec()));
             fields.push(field("ndc", "NDC, and ω", table(&["x", "y", "z", "ω"], rows.collect())));
-            fields.extend(facing(area));
+            let is_on_screen = matches!(primitive, Primitive::Coverage(_));
+            fields.extend(facing(area, if is_on_screen { PIXELS } else { "area · 2, NDC" }));
         } else if let Primitive::Triangle(triangle) = primitive {
             let [a, b, c] = triangle.corners;
-            fields.extend(facing(twice_signed_area(a, b, c)));
+            fields.extend(facing(twice_signed_area(a, b, c), PIXELS));
         }
-        Entry { kind, title, fields }
+        Entry { fields, ..Entry::new(kind, title) }
     }
 
     /// The next triangle is assembled, or there is none: has anything been left of this one?
@@ -304,13 +328,11 @@ impl<'a> Teller<'a> {
             ("clipped", "clipped away", &self.clipped_away),
         ];
         let entry = |(kind, why, numbers): (&'static str, &str, &Vec<usize>)| {
-            let title = format!("{why}: {} triangles, {}", numbers.len(), ranges(numbers));
+            let count = if numbers.len() == 1 { "triangle" } else { "triangles" };
+            let title = format!("{why}: {} {count}, {}", numbers.len(), ranges(numbers));
             let list = numbers.iter().map(|&number| number as f64).collect();
-            (!numbers.is_empty()).then(|| Entry {
-                kind,
-                title,
-                fields: vec![field("numbers", "", Value::Numbers(list))],
-            })
+            let fields = vec![field("numbers", "", Value::Numbers(list))];
+            (!numbers.is_empty()).then(|| Entry { fields, ..Entry::new(kind, title) })
         };
         all.map(entry).into_iter().flatten()
     }
@@ -319,16 +341,17 @@ impl<'a> Teller<'a> {
         if let Some(primitive) = self.primitive.take_if(|_| !self.is_open)
             && let Some(reason) = super::rows::miss(primitive, within(self.pixel, self.factor), self.screen())
         {
-            let title = format!(
-                "{} {}: {reason}",
-                if matches!(primitive, Primitive::Line { .. }) { "line" } else { "triangle" },
-                self.number
-            );
-            self.found.others.push(Entry { kind: "missed", title, fields: Vec::new() });
+            let name = if matches!(primitive, Primitive::Line { .. }) { "line" } else { "triangle" };
+            let piece = if self.pieces > 1 { format!(", piece {}", self.pieces) } else { String::new() };
+            let title = format!("{name} {}{piece}: {reason}", self.number);
+            self.found.others.push(Entry::new("missed", title));
         }
         (self.primitive, self.is_open, self.is_hit_complete) = (None, false, true);
     }
 }
+
+/// An area on the screen.
+const PIXELS: &str = "area · 2, px²";
 
 pub(super) fn table(columns: &[&str], rows: Vec<(String, Vec<Option<f64>>)>) -> Value {
     Value::Table { columns: columns.iter().map(|&column| column.to_owned()).collect(), rows }
@@ -339,14 +362,15 @@ pub(super) fn value_names(count: usize) -> Vec<String> {
     (1..=count).map(|i| format!("V{i}")).collect()
 }
 
-fn facing(area: f64) -> Vec<Field> {
+/// Twice the signed area, and what it says; the label names the space in which it was reckoned.
+fn facing(area: f64, label: &'static str) -> Vec<Field> {
     let winding = match Winding::of(area) {
         Some(Winding::CounterClockwise) => "counter-clockwise",
         Some(Winding::Clockwise) => "clockwise",
         None => "none",
     };
     vec![
-        field("area", "area, doubled", Value::Number(area)),
+        field("area", label, Value::Number(area)),
         field("winding", "winding", Value::Text(winding.to_owned())),
     ]
 }
@@ -382,7 +406,7 @@ fn plane_name(plane: &Plane) -> String {
 }
 
 /// How each plane changed the triangle: which vertices it cut off, and where the cuts are. New vertices are D, E, …
-fn clip_fields(triangle: &ClipTriangle) -> Option<Field> {
+fn clip_fields(triangle: &ClipTriangle) -> (Option<Field>, Vec<char>) {
     let mut names: Vec<char> = "ABC".chars().collect();
     let mut polygon: Vec<ClipVertex<0>> = triangle.vertices.iter().map(Point::bare).collect();
     let mut next = 'D';
@@ -419,13 +443,13 @@ fn clip_fields(triangle: &ClipTriangle) -> Option<Field> {
         names = kept;
     }
     if lines.is_empty() {
-        return None;
+        return (None, names);
     }
     lines.push(format!(
         "left: {}",
         if names.is_empty() { "nothing".to_owned() } else { names.iter().collect() }
     ));
-    Some(field("clipping", "clipped", Value::List(lines)))
+    (Some(field("clipping", "clipped", Value::List(lines))), names)
 }
 
 /// The three edge functions at a pixel's center, and what the weights make of the vertices.
@@ -440,15 +464,11 @@ fn edge_fields(coverage: &Coverage, piece: Option<&[Point; 3]>, (x, y): Pixel) -
     });
     let mut fields =
         vec![field("edges", "on the screen", table(&["x", "y", "E opposite", "weight"], rows.collect()))];
-    let ties =
-        coverage.edges.iter().zip(values).zip(["BC", "CA", "AB"]).filter(|((_, value), _)| *value == 0);
-    for ((edge, _), name) in ties {
-        let rule = if edge.is_top_left() {
-            "a top or left edge: covered"
-        } else {
-            "neither top nor left: not covered"
-        };
-        fields.push(field("tie", "tie", Value::Text(format!("the center is on {name}, {rule}"))));
+    let ties = values.iter().zip(["BC", "CA", "AB"]).filter(|(value, _)| **value == 0);
+    let ties = ties.map(|(_, name)| format!("the center is on {name}, a top or left edge: covered"));
+    let ties: Vec<String> = ties.collect();
+    if !ties.is_empty() {
+        fields.push(field("ties", "tie", Value::List(ties)));
     }
     if let Some(piece) = piece {
         fields.extend(weighted_fields(piece, [weights[1], weights[2]]));

@@ -368,7 +368,13 @@ pub(super) fn miss(primitive: &Primitive, (x, y): Pixel, window: Rect) -> Option
             let unit = (SUBPIXELS * SUBPIXELS) as f64;
             let values =
                 coverage.edge_values(center(x, y)).map(|value| format!("{:.3}", value as f64 / unit));
-            format!("its edge functions are {}: one is on the wrong side", values.join(", "))
+            let is_beyond = coverage.edge_values(center(x, y)).iter().any(|&value| value < 0);
+            let why = if is_beyond {
+                "on the wrong side of an edge"
+            } else {
+                "on an edge that is neither top nor left"
+            };
+            format!("its edge functions are {}: the center is {why}", values.join(", "))
         }),
     }
 }
@@ -399,10 +405,8 @@ fn row_miss(
             },
         );
     }
-    let rows = if rows.is_empty() {
-        "there is none".to_owned()
-    } else {
-        format!("it runs from x = {}", rows.join(" and "))
-    };
-    Some(format!("row {y}: {rows}"))
+    if rows.is_empty() {
+        return Some(format!("it has no row {y}"));
+    }
+    Some(format!("its row {y} runs from x = {}", rows.join(" and ")))
 }

@@ -7,9 +7,9 @@ use wide::{f32x8, i32x8};
 use super::front::{Front, Place, Source, Triangle, bounding_box, signed_area};
 use crate::depth::DepthTest;
 use crate::edge::{EdgeFunction, SUBPIXELS, center};
-use crate::interpolate::Projected;
+use crate::interpolate::{Interpolation, Projected};
 use crate::lanes::{LANES, LaneMask, Lanes, channels, is_greater, is_less_or_equal, packed};
-use crate::merge::Blend;
+use crate::merge::{Blend, Merge};
 use crate::pipeline::RenderState;
 use crate::real::{Mask, Real};
 use crate::shader::{Shaded, Shader};
@@ -65,6 +65,34 @@ impl Setup {
         let edges = [edge(b, c), edge(c, a), edge(a, b)];
         let shy = edges.map(|edge| i64::from(!edge.is_top_left()));
         Self { edges, shy, one_over_area: 1.0 / (signed_area.abs() as f32), area }
+    }
+
+    /// The least and the greatest value of an edge function at the centers of a rectangle, less what keeps a tie out.
+    fn range(&self, i: usize, area: Rect) -> [i64; 2] {
+        let corners = [
+            (area.left, area.bottom),
+            (area.right - 1, area.bottom),
+            (area.left, area.top - 1),
+            (area.right - 1, area.top - 1),
+        ];
+        let values = corners.map(|(x, y)| self.edges[i].at(center(x, y)) - self.shy[i]);
+        [values.into_iter().fold(i64::MAX, i64::min), values.into_iter().fold(i64::MIN, i64::max)]
+    }
+
+    /// Whether all centers of a rectangle are covered.
+    fn covers(&self, area: Rect) -> bool {
+        (0..3).all(|i| self.range(i, area)[0] >= 0)
+    }
+
+    /// Whether a rectangle lies wholly on the wrong side of an edge.
+    fn misses(&self, area: Rect) -> bool {
+        (0..3).any(|i| self.range(i, area)[1] < 0)
+    }
+
+    /// Whether values near a rectangle have at most 40 bits.
+    fn is_split_exact(&self, area: Rect) -> bool {
+        let near = Rect { right: area.right + LANES as i32, ..area };
+        (0..3).all(|i| self.range(i, near).into_iter().all(|value| value.abs() < 1 << 39))
     }
 
     /// How the weights of the second and third vertex change per pixel.
@@ -206,93 +234,169 @@ impl<'a> Tile<'a> {
         setup: &Setup,
         triangle: Triangle<'_>,
     ) {
-        let corners = triangle.records.map(corner_of::<N>);
-        let varyings = TriangleVaryings::between(corners, frame.state.interpolation);
-        let gradients = setup.gradients(triangle.places);
-        let Rect { left, right, .. } = setup.area;
         // Groups of eight begin at the same columns for all triangles.
-        let first = left - (left - self.rect.left) % LANES as i32;
-        let one_over_area = Lanes::splat(setup.one_over_area);
-        let mut rows = Rows::new(setup, first, is_narrow(triangle.places));
-        for y in setup.area.rows() {
-            for x in (first..right).step_by(LANES) {
-                let (covered, second, third) = rows.group(x);
-                let mask = covered.and(LaneMask::range(left - x, right - x));
-                if mask.bits() != 0 {
-                    let weights = [second * one_over_area, third * one_over_area];
-                    self.shade(frame, &varyings, gradients, mask, weights, [x, y]);
-                }
-            }
-            rows.next_row();
+        let first = setup.area.left - (setup.area.left - self.rect.left) % LANES as i32;
+        let area = Rect { left: first, ..setup.area };
+        if is_narrow(triangle.places) {
+            self.draw_groups(frame, setup, triangle, Narrow::new(setup, first));
+        } else if setup.misses(area) {
+            // An edge has all of the tile on its wrong side.
+        } else if !setup.is_split_exact(area) {
+            self.draw_groups(frame, setup, triangle, Huge { setup, left: first });
+        } else if setup.covers(area) {
+            self.draw_groups(frame, setup, triangle, Split::<true>::new(setup, first));
+        } else {
+            self.draw_groups(frame, setup, triangle, Split::<false>::new(setup, first));
         }
     }
 
-    /// Tests, shades and writes eight neighbors.
-    fn shade<S: Shader<N>, const N: usize>(
+    fn draw_groups<S: Shader<N>, E: Edges, const N: usize>(
         &mut self,
         frame: &Frame<'_, S, N>,
-        varyings: &TriangleVaryings<Lanes, N>,
-        gradients: WeightGradients<Lanes>,
-        covered: LaneMask,
-        weights: [Lanes; 2],
-        [x, y]: [i32; 2],
+        setup: &Setup,
+        triangle: Triangle<'_>,
+        edges: E,
     ) {
-        let state = frame.state;
-        let place = self.place(x, y);
-        let is_linear = state.depth_encoding.is_linear_on_screen();
-
-        // Depth first: what is hidden need not be shaded.
-        let depth = if is_linear { varyings.depth_at(weights) } else { varyings.at(weights).w };
-        let stored = load(&self.depths[place..], 0.0);
-        let stored = Lanes::new(stored);
-        let mask = covered.and(passes(state.merge.depth_test, depth, stored));
-        if mask.bits() == 0 {
-            return;
-        }
-
-        let point = varyings.at(weights);
-        let shaded = if S::USES_DERIVATIVES {
-            frame.shader.fragment_with_derivatives(point.values, varyings.derivatives(&point, gradients))
+        let corners = triangle.records.map(corner_of::<N>);
+        let varyings = TriangleVaryings::between(corners, frame.state.interpolation);
+        let gradients =
+            if S::USES_DERIVATIVES { setup.gradients(triangle.places) } else { [[Lanes::ZERO; 2]; 2] };
+        let brush = Brush { varyings, gradients, one_over_area: Lanes::splat(setup.one_over_area) };
+        let place = Placing { area: setup.area, tile: self.rect, width: self.width };
+        let (state, colors, depths) = (frame.state, &mut *self.colors, &mut *self.depths);
+        if is_plain(state) {
+            draw_area::<true, S, E, N>(frame.shader, state, &brush, &edges, &place, colors, depths);
         } else {
-            frame.shader.fragment(point.values)
-        };
-        let mask = mask.and(shaded.keep);
-
-        if state.merge.depth_write {
-            store(&mut self.depths[place..], Lanes::select(mask, depth, stored).to_array());
+            draw_area::<false, S, E, N>(frame.shader, state, &brush, &edges, &place, colors, depths);
         }
-        let there: [i32; LANES] = load(&self.colors[place..], Color::BLACK).map(|color| color.bits() as i32);
-        let there = i32x8::new(there);
-        let blended = match state.merge.blend {
-            Blend::Opaque => packed([shaded.color[0], shaded.color[1], shaded.color[2]]),
-            blend => packed(blend.apply(shaded.color, channels(there))),
-        };
-        let words = mask.choose(blended, there).to_array();
-        store(&mut self.colors[place..], words.map(|word| Color::from_bits(word as u32)));
     }
-    // ANCHOR_END: rows
 }
+
+/// Whether all options that matter for a pixel have their default values: the most common case, known at compile time.
+fn is_plain(state: &RenderState) -> bool {
+    state.merge == Merge::default()
+        && state.depth_encoding.is_linear_on_screen()
+        && state.interpolation == Interpolation::PerspectiveCorrect
+}
+
+/// What is the same for all pixels of a triangle.
+struct Brush<const N: usize> {
+    varyings: TriangleVaryings<Lanes, N>,
+    gradients: WeightGradients<Lanes>,
+    one_over_area: Lanes,
+}
+
+/// Which pixels of a tile a triangle may cover, and where they are in memory.
+struct Placing {
+    area: Rect,
+    tile: Rect,
+    width: usize,
+}
+
+/// Draws the rows of a triangle in a tile, eight pixels at a time.
+///
+/// A function by itself, so that the compiler knows that nothing that is written here changes what is read.
+#[inline(never)]
+fn draw_area<const PLAIN: bool, S: Shader<N>, E: Edges, const N: usize>(
+    shader: &S,
+    state: &RenderState,
+    brush: &Brush<N>,
+    edges: &E,
+    place: &Placing,
+    colors: &mut [Color],
+    depths: &mut [f32],
+) {
+    let Placing { area, tile, width } = *place;
+    let first = area.left - (area.left - tile.left) % LANES as i32;
+    for y in area.rows() {
+        let start = (y - tile.bottom) as usize * width;
+        let row = start + first as usize..start + tile.right as usize;
+        let (color_groups, color_rest) = colors[row.clone()].as_chunks_mut::<LANES>();
+        let (depth_groups, depth_rest) = depths[row].as_chunks_mut::<LANES>();
+        let mut group = edges.row(y);
+        let mut x = first;
+        for (colors, depths) in color_groups.iter_mut().zip(depth_groups) {
+            if x >= area.right {
+                break;
+            }
+            let limits = [area.left - x, area.right - x];
+            draw_group::<PLAIN, S, E, N>(shader, state, brush, &group, edges, limits, colors, depths);
+            edges.step(&mut group);
+            x += LANES as i32;
+        }
+        if x < area.right {
+            // The picture ends within a group.
+            let (mut eight_colors, mut eight_depths) = ([Color::BLACK; LANES], [0.0; LANES]);
+            eight_colors[..color_rest.len()].copy_from_slice(color_rest);
+            eight_depths[..depth_rest.len()].copy_from_slice(depth_rest);
+            let limits = [area.left - x, area.right - x];
+            let (colors, depths) = (&mut eight_colors, &mut eight_depths);
+            draw_group::<PLAIN, S, E, N>(shader, state, brush, &group, edges, limits, colors, depths);
+            color_rest.copy_from_slice(&eight_colors[..color_rest.len()]);
+            depth_rest.copy_from_slice(&eight_depths[..depth_rest.len()]);
+        }
+    }
+}
+
+/// Tests, shades and writes eight neighbors, as far as they are covered and their lanes lie between the limits.
+#[inline(always)]
+#[allow(clippy::too_many_arguments, reason = "a part of the innermost loop")]
+fn draw_group<const PLAIN: bool, S: Shader<N>, E: Edges, const N: usize>(
+    shader: &S,
+    state: &RenderState,
+    brush: &Brush<N>,
+    group: &E::Group,
+    edges: &E,
+    [start, end]: [i32; 2],
+    colors: &mut [Color; LANES],
+    depths: &mut [f32; LANES],
+) {
+    let mut mask = edges.covered(group);
+    if start > 0 || end < LANES as i32 {
+        mask = mask.and(LaneMask::range(start, end));
+    }
+    if mask.bits() == 0 {
+        return;
+    }
+    let Brush { varyings, gradients, one_over_area } = brush;
+    let weights = E::values(group).map(|value| value * *one_over_area);
+    let interpolation = if PLAIN { Interpolation::PerspectiveCorrect } else { state.interpolation };
+
+    // Depth first: what is hidden need not be shaded.
+    let is_linear = PLAIN || state.depth_encoding.is_linear_on_screen();
+    let depth = if is_linear { varyings.depth_at(weights) } else { varyings.at(weights).w };
+    let stored = Lanes::new(*depths);
+    let test = if PLAIN { DepthTest::LessOrEqual } else { state.merge.depth_test };
+    mask = mask.and(passes(test, depth, stored));
+    if mask.bits() == 0 {
+        return;
+    }
+
+    let point = varyings.interpolated(weights, interpolation);
+    let shaded = if S::USES_DERIVATIVES {
+        shader.fragment_with_derivatives(point.values, varyings.derivatives(&point, *gradients))
+    } else {
+        shader.fragment(point.values)
+    };
+    mask = mask.and(shaded.keep);
+
+    if PLAIN || state.merge.depth_write {
+        *depths = Lanes::select(mask, depth, stored).to_array();
+    }
+    let there = i32x8::new(colors.map(|color| color.bits() as i32));
+    let blend = if PLAIN { Blend::Opaque } else { state.merge.blend };
+    let words = match blend {
+        Blend::Opaque => packed([shaded.color[0], shaded.color[1], shaded.color[2]]),
+        blend => packed(blend.apply(shaded.color, channels(there))),
+    };
+    *colors = mask.choose(words, there).to_array().map(|word| Color::from_bits(word as u32));
+}
+// ANCHOR_END: rows
 
 /// What a corner's record holds, the same in all lanes.
 fn corner_of<const N: usize>(record: &[f32x8]) -> CornerVaryings<Lanes, N> {
     let number = |k: usize| Lanes::splat(record[k / LANES].as_array_ref()[k % LANES]);
     CornerVaryings { distance: number(0), depth: number(1), values: from_fn(|k| number(k + 2)) }
-}
-
-/// Eight neighbors of a row; beyond its end, `rest`.
-fn load<T: Copy>(row: &[T], rest: T) -> [T; LANES] {
-    match row.first_chunk() {
-        Some(eight) => *eight,
-        None => from_fn(|lane| row.get(lane).copied().unwrap_or(rest)),
-    }
-}
-
-/// Writes eight neighbors back, as far as the row goes.
-fn store<T: Copy>(row: &mut [T], values: [T; LANES]) {
-    match row.first_chunk_mut() {
-        Some(eight) => *eight = values,
-        None => row.iter_mut().zip(values).for_each(|(to, value)| *to = value),
-    }
 }
 
 fn passes(test: DepthTest, depth: Lanes, stored: Lanes) -> LaneMask {
@@ -325,83 +429,162 @@ fn narrow_lanes(edge: &EdgeFunction, start: [i64; 2]) -> i32x8 {
     i32x8::splat(edge.at(start) as i32) + i32x8::splat(step) * i32x8::new([0, 1, 2, 3, 4, 5, 6, 7])
 }
 
-/// The edge functions along a row, eight centers at a time: which are covered, and two of the three values.
-enum Rows<'a> {
-    /// In 32-bit integers.
-    Narrow { first: i32, values: [i32x8; 3], shy: [i32x8; 3], steps: [[i32; 3]; 2] },
-    /// In 64-bit integers; weights by `f64`, in which they are exact.
-    Wide { setup: &'a Setup, y: i32, first: i32, values: [i64; 3] },
+/// The edge functions along a row, eight centers at a time.
+trait Edges {
+    /// The values at eight neighboring centers.
+    type Group;
+
+    /// The first group of a row.
+    fn row(&self, y: i32) -> Self::Group;
+    /// The next eight.
+    fn step(&self, group: &mut Self::Group);
+    /// Which of the eight are covered.
+    fn covered(&self, group: &Self::Group) -> LaneMask;
+    /// The values that belong to the second and the third vertex, each rounded once.
+    fn values(group: &Self::Group) -> [Lanes; 2];
 }
 
-impl<'a> Rows<'a> {
-    fn new(setup: &'a Setup, first: i32, is_narrow: bool) -> Self {
-        let y = setup.area.bottom;
-        let start = center(first, y);
-        if is_narrow {
-            let values = from_fn(|i| narrow_lanes(&setup.edges[i], start));
-            let shy = setup.shy.map(|shy| i32x8::splat(shy as i32));
-            let steps = [
-                setup.edges.map(|edge| (edge.step_x * SUBPIXELS) as i32),
-                setup.edges.map(|edge| (edge.step_y * SUBPIXELS) as i32),
-            ];
-            Self::Narrow { first, values, shy, steps }
-        } else {
-            Self::Wide { setup, y, first, values: setup.edges.map(|edge| edge.at(start)) }
-        }
-    }
+/// In 32-bit integers, for triangles that are not too large.
+struct Narrow<'a> {
+    setup: &'a Setup,
+    left: i32,
+    steps: [i32x8; 3],
+    shy: [i32x8; 3],
+}
 
-    fn next_row(&mut self) {
-        match self {
-            Self::Narrow { values, steps, .. } => {
-                *values = from_fn(|i| values[i] + i32x8::splat(steps[1][i]));
-            }
-            Self::Wide { setup, y, first, values } => {
-                *y += 1;
-                *values = setup.edges.map(|edge| edge.at(center(*first, *y)));
-            }
-        }
-    }
-
-    /// Which of the eight pixels from x on are covered, and the values for the second and the third vertex.
-    fn group(&self, x: i32) -> (LaneMask, Lanes, Lanes) {
-        match self {
-            Self::Narrow { first, values, shy, steps, .. } => {
-                let here: [i32x8; 3] = from_fn(|i| values[i] + i32x8::splat(steps[0][i] * (x - first)));
-                let outside = (here[0] - shy[0]) | (here[1] - shy[1]) | (here[2] - shy[2]);
-                (LaneMask::of_signs(outside).not(), here[1].round_float(), here[2].round_float())
-            }
-            Self::Wide { setup, first, values, .. } => wide_group(setup, *values, x - first),
-        }
+impl<'a> Narrow<'a> {
+    fn new(setup: &'a Setup, left: i32) -> Self {
+        let step = |edge: EdgeFunction| i32x8::splat((edge.step_x * SUBPIXELS) as i32 * LANES as i32);
+        let shy = setup.shy.map(|shy| i32x8::splat(shy as i32));
+        Self { setup, left, steps: setup.edges.map(step), shy }
     }
 }
 
-/// The same in 64 bits.
-fn wide_group(setup: &Setup, row: [i64; 3], columns: i32) -> (LaneMask, Lanes, Lanes) {
-    let steps = setup.edges.map(|edge| edge.step_x * SUBPIXELS);
-    let start: [i64; 3] = from_fn(|i| row[i] + steps[i] * i64::from(columns));
-    let mut covered = LaneMask::all(true);
-    for i in 0..3 {
-        let (from, to) = (start[i] - setup.shy[i], start[i] - setup.shy[i] + steps[i] * (LANES as i64 - 1));
-        if from < 0 && to < 0 {
-            return (LaneMask::all(false), Lanes::ZERO, Lanes::ZERO);
-        }
-        if from < 0 || to < 0 {
-            covered = covered.and(crossing(from, steps[i]));
-        }
+impl Edges for Narrow<'_> {
+    type Group = [i32x8; 3];
+
+    #[inline(always)]
+    fn row(&self, y: i32) -> [i32x8; 3] {
+        from_fn(|i| narrow_lanes(&self.setup.edges[i], center(self.left, y)))
     }
-    let lanes = |i: usize| {
-        let (start, step) = (start[i] as f64, steps[i] as f64);
-        Lanes::new(from_fn(|lane| (start + step * lane as f64) as f32))
-    };
-    (covered, lanes(1), lanes(2))
+
+    #[inline(always)]
+    fn step(&self, group: &mut [i32x8; 3]) {
+        *group = from_fn(|i| group[i] + self.steps[i]);
+    }
+
+    #[inline(always)]
+    fn covered(&self, group: &[i32x8; 3]) -> LaneMask {
+        let outside = (group[0] - self.shy[0]) | (group[1] - self.shy[1]) | (group[2] - self.shy[2]);
+        LaneMask::of_signs(outside).not()
+    }
+
+    #[inline(always)]
+    fn values(group: &[i32x8; 3]) -> [Lanes; 2] {
+        [group[1].round_float(), group[2].round_float()]
+    }
 }
 
-/// The lanes on the right side of an edge that passes between the first and the last of them.
-fn crossing(from: i64, step: i64) -> LaneMask {
-    if step > 0 {
-        // The first lane from which on the value is not negative.
-        LaneMask::range(((-from + step - 1) / step) as i32, LANES as i32)
-    } else {
-        LaneMask::range(0, (from / -step) as i32 + 1)
+// ANCHOR: split
+/// A whole number of up to 40 bits as the sum of two `f32` that are exact: a multiple of 2¹⁶, and the rest.
+///
+/// ```text
+///    E = high · 2¹⁶ + low        high: up to 24 bits        low: 16 bits, and 22 after a tile's 64 steps
+/// ```
+///
+/// Both are stepped by additions that are exact; their sum is E, rounded once. Its sign is that of E.
+#[derive(Clone, Copy)]
+struct Parts {
+    high: Lanes,
+    low: Lanes,
+}
+
+impl Parts {
+    /// The numbers start, start + step, start + 2 · step, …
+    fn stepping(start: i64, step: i64) -> Self {
+        let number = Lanes::new([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
+        let (start, step) = (Self::same(start), Self::same(step));
+        Self { high: start.high + step.high * number, low: start.low + step.low * number }
+    }
+
+    fn same(number: i64) -> Self {
+        let (high, low) = (number >> 16, number & 0xFFFF);
+        Self { high: Lanes::splat(high as f32 * 65_536.0), low: Lanes::splat(low as f32) }
+    }
+}
+// ANCHOR_END: split
+
+/// In [`Parts`]. With `INSIDE` all centers are known to be covered, and nothing is asked.
+struct Split<'a, const INSIDE: bool> {
+    setup: &'a Setup,
+    left: i32,
+    steps: [Parts; 3],
+    shy: [Lanes; 3],
+}
+
+impl<'a, const INSIDE: bool> Split<'a, INSIDE> {
+    fn new(setup: &'a Setup, left: i32) -> Self {
+        let steps = setup.edges.map(|edge| Parts::same(edge.step_x * SUBPIXELS * LANES as i64));
+        Self { setup, left, steps, shy: setup.shy.map(|shy| Lanes::splat(shy as f32)) }
+    }
+}
+
+impl<const INSIDE: bool> Edges for Split<'_, INSIDE> {
+    type Group = [Parts; 3];
+
+    #[inline(always)]
+    fn row(&self, y: i32) -> [Parts; 3] {
+        self.setup.edges.map(|edge| Parts::stepping(edge.at(center(self.left, y)), edge.step_x * SUBPIXELS))
+    }
+
+    #[inline(always)]
+    fn step(&self, group: &mut [Parts; 3]) {
+        for (parts, step) in group.iter_mut().zip(&self.steps).skip(usize::from(INSIDE)) {
+            *parts = Parts { high: parts.high + step.high, low: parts.low + step.low };
+        }
+    }
+
+    #[inline(always)]
+    fn covered(&self, group: &[Parts; 3]) -> LaneMask {
+        if INSIDE {
+            return LaneMask::all(true);
+        }
+        let is_inside =
+            |i: usize| is_less_or_equal(Lanes::ZERO, group[i].high + (group[i].low - self.shy[i]));
+        is_inside(0).and(is_inside(1)).and(is_inside(2))
+    }
+
+    #[inline(always)]
+    fn values(group: &[Parts; 3]) -> [Lanes; 2] {
+        [group[1].high + group[1].low, group[2].high + group[2].low]
+    }
+}
+
+/// In 64-bit integers: for triangles of thousands of pixels on a side, seen from near their corners.
+struct Huge<'a> {
+    setup: &'a Setup,
+    left: i32,
+}
+
+impl Edges for Huge<'_> {
+    type Group = [[i64; LANES]; 3];
+
+    fn row(&self, y: i32) -> Self::Group {
+        self.setup.edges.map(|edge| from_fn(|lane| edge.at(center(self.left + lane as i32, y))))
+    }
+
+    fn step(&self, group: &mut Self::Group) {
+        for (values, edge) in group.iter_mut().zip(&self.setup.edges) {
+            values.iter_mut().for_each(|value| *value += edge.step_x * SUBPIXELS * LANES as i64);
+        }
+    }
+
+    fn covered(&self, group: &Self::Group) -> LaneMask {
+        let is_covered = |lane: usize| (0..3).all(|i| group[i][lane] >= self.setup.shy[i]);
+        LaneMask::of_bits((0..LANES).fold(0, |bits, lane| bits | i32::from(is_covered(lane)) << lane))
+    }
+
+    fn values(group: &Self::Group) -> [Lanes; 2] {
+        [1, 2].map(|i| Lanes::new(group[i].map(|value| value as f32)))
     }
 }

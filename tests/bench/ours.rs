@@ -1,0 +1,315 @@
+//! Our rasterizers, ready to be measured. Another one is a line in [`RASTERIZERS`].
+
+use arrayvec::ArrayVec;
+use glam::{DMat4, DVec4, Vec3};
+use rasterbook::Color;
+use rasterbook::clip::{ClipVertex, MAX_VERTICES, NdcVertex, clip_triangle, fan};
+use rasterbook::cull::CullMode;
+use rasterbook::depth::Target;
+use rasterbook::edge::Exact;
+use rasterbook::light::lambert;
+use rasterbook::mesh::Mesh;
+use rasterbook::pipeline::{RenderState, draw};
+use rasterbook::probe::Silent;
+use rasterbook::raster::{Rasterizer, Scanline};
+use rasterbook::real::{Mask, Real, Scalar};
+use rasterbook::shader::{Shaded, Shader};
+use rasterbook::texture::{AddressMode, Texture};
+use rasterbook::tiled::Tiled;
+
+use crate::scenes::{AMBIENT, Scene, TEXTURE_SIDE, TO_LIGHT, Vertex, texels};
+
+/// Something that draws a scene again and again.
+pub(crate) trait Frame {
+    /// Clears and draws, until all pixels are in memory.
+    fn draw(&mut self);
+    /// What was drawn last: the channels of all pixels, the lowest row first.
+    fn picture(&mut self) -> Vec<[u8; 3]>;
+}
+
+/// One of our rasterizers.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Ours {
+    pub(crate) name: &'static str,
+    pub(crate) threads: Threads,
+    pub(crate) coverage: Coverage,
+    /// Makes a scene ready to be drawn.
+    pub(crate) prepare: fn(Scene) -> Box<dyn Frame + Send>,
+    /// Makes a scene ready to be drawn stage by stage.
+    pub(crate) stages: fn(Scene) -> Box<dyn Stages + Send>,
+}
+
+/// How many threads a renderer can use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Threads {
+    One,
+    Many,
+}
+
+/// Which pixels a renderer covers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Coverage {
+    /// Those that the graphics standards prescribe.
+    Exact,
+    /// Nearly those.
+    Near,
+}
+
+const fn ours<Z: Rasterizer + Default + Send + 'static>(
+    name: &'static str,
+    threads: Threads,
+    coverage: Coverage,
+) -> Ours
+where
+    Z::Depth: Send,
+{
+    Ours { name, threads, coverage, prepare: prepare::<Z>, stages: stages::<Z> }
+}
+
+/// The table of our rasterizers.
+pub(crate) const RASTERIZERS: [Ours; 4] = [
+    ours::<Scanline>("scanline", Threads::One, Coverage::Near),
+    ours::<Exact<f64>>("exact-f64", Threads::One, Coverage::Exact),
+    ours::<Exact<f32>>("exact-f32", Threads::One, Coverage::Exact),
+    ours::<Tiled>("tiled", Threads::Many, Coverage::Exact),
+];
+
+/// How all scenes are drawn.
+fn state() -> RenderState {
+    RenderState { cull: CullMode::Back, ..RenderState::default() }
+}
+
+/// The shaders' uniforms.
+#[derive(Clone, Debug)]
+struct Uniforms {
+    clip_from_view: DMat4,
+    texture: Texture,
+}
+
+impl Uniforms {
+    fn new(scene: &Scene) -> Self {
+        let rows = scene.clip_from_view.map(|row| row.map(f64::from));
+        let texels = texels().into_iter().map(|[r, g, b]| Color::rgb(r, g, b)).collect();
+        Self {
+            clip_from_view: DMat4::from_cols_array_2d(&rows).transpose(),
+            texture: Texture::new(TEXTURE_SIDE, TEXTURE_SIDE, texels),
+        }
+    }
+
+    fn project(&self, vertex: &Vertex) -> DVec4 {
+        self.clip_from_view * Vec3::from(vertex.position).as_dvec3().extend(1.0)
+    }
+}
+
+/// The texel.
+#[derive(Clone, Debug)]
+struct Unlit(Uniforms);
+
+impl Unlit {
+    fn new(scene: &Scene) -> Self {
+        Self(Uniforms::new(scene))
+    }
+}
+
+impl Shader<2> for Unlit {
+    type Attributes = Vertex;
+
+    fn vertex(&self, vertex: &Vertex) -> ClipVertex<2> {
+        ClipVertex { position: self.0.project(vertex), varyings: vertex.uv.map(f64::from) }
+    }
+
+    fn fragment<R: Real>(&self, uv: [R; 2]) -> Shaded<R> {
+        Shaded::opaque(self.0.texture.nearest(uv, AddressMode::Repeat))
+    }
+}
+
+/// Diffuse light on the texel.
+#[derive(Clone, Debug)]
+struct Lit(Uniforms);
+
+impl Lit {
+    fn new(scene: &Scene) -> Self {
+        Self(Uniforms::new(scene))
+    }
+}
+
+impl Shader<5> for Lit {
+    type Attributes = Vertex;
+
+    fn vertex(&self, vertex: &Vertex) -> ClipVertex<5> {
+        let ([u, v], [x, y, z]) = (vertex.uv, vertex.normal);
+        ClipVertex { position: self.0.project(vertex), varyings: [u, v, x, y, z].map(f64::from) }
+    }
+
+    fn fragment<R: Real>(&self, [u, v, x, y, z]: [R; 5]) -> Shaded<R> {
+        let diffuse = lambert([x, y, z], TO_LIGHT.map(|c| R::of(f64::from(c))));
+        let brightness = (diffuse + R::of(f64::from(AMBIENT))).min(R::of(1.0));
+        let texel = self.0.texture.nearest([u, v], AddressMode::Repeat);
+        Shaded::opaque(texel.map(|channel| brightness * channel))
+    }
+}
+
+/// The scene's triangles.
+fn mesh(scene: Scene) -> Mesh<Vertex> {
+    Mesh::indexed(scene.vertices, scene.indices).expect("every index names a vertex of the scene")
+}
+
+/// Makes a target as it is before a frame.
+fn clear<D: Scalar>(target: &mut Target<D>, state: &RenderState) {
+    target.clear(state.clear_color, D::of(state.clear_depth));
+}
+
+/// A scene, a shader for it and a rasterizer.
+struct Prepared<Z: Rasterizer, S, const N: usize> {
+    rasterizer: Z,
+    shader: S,
+    mesh: Mesh<Vertex>,
+    state: RenderState,
+    target: Target<Z::Depth>,
+}
+
+impl<Z: Rasterizer + Default, S, const N: usize> Prepared<Z, S, N> {
+    fn new(shader: S, scene: Scene) -> Self {
+        let [width, height] = scene.size;
+        let target = Target::sized(width, height);
+        Self { rasterizer: Z::default(), shader, mesh: mesh(scene), state: state(), target }
+    }
+}
+
+fn prepare<Z: Rasterizer + Default + Send + 'static>(scene: Scene) -> Box<dyn Frame + Send>
+where
+    Z::Depth: Send,
+{
+    if scene.is_lit {
+        Box::new(Prepared::<Z, Lit, 5>::new(Lit::new(&scene), scene))
+    } else {
+        Box::new(Prepared::<Z, Unlit, 2>::new(Unlit::new(&scene), scene))
+    }
+}
+
+impl<Z: Rasterizer, S, const N: usize> Frame for Prepared<Z, S, N>
+where
+    S: Shader<N, Attributes = Vertex> + Sync,
+{
+    fn draw(&mut self) {
+        clear(&mut self.target, &self.state);
+        draw(&self.mesh, &self.shader, &self.state, &self.rasterizer, &mut self.target, &Silent);
+    }
+
+    fn picture(&mut self) -> Vec<[u8; 3]> {
+        let picture = &self.target.color;
+        let rect = picture.rect();
+        rect.rows()
+            .flat_map(|y| rect.columns().map(move |x| (x, y)))
+            .map(|(x, y)| picture.get(x, y).unwrap_or_default().channels())
+            .collect()
+    }
+}
+
+/// What can be done alone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Stage {
+    /// All pixels get the background's color and depth.
+    Clear,
+    /// The vertex shader.
+    Vertex,
+    /// Assembly, clipping and the divide.
+    Clip,
+    /// What a rasterizer does once a triangle: it draws onto a target of one pixel.
+    Setup,
+    /// That, and finding the covered pixels: the fragment shader throws all of them away.
+    Raster,
+    /// That, and what is done for each of them: interpolation, shading, the depth test, writing.
+    Shade,
+    /// All of it.
+    Frame,
+}
+
+/// A scene that can be drawn stage by stage: each of them with what the stage before it has left.
+pub(crate) trait Stages {
+    /// Does what is to be done in one stage.
+    fn run(&mut self, stage: Stage);
+}
+
+/// A scene, and what its stages leave.
+struct Staged<Z: Rasterizer, S, const N: usize> {
+    prepared: Prepared<Z, S, N>,
+    shaded: Vec<ClipVertex<N>>,
+    pieces: Vec<[NdcVertex<N>; 3]>,
+    /// One pixel, the lower left one of the view.
+    dot: Target<Z::Depth>,
+}
+
+impl<Z: Rasterizer, S: Shader<N, Attributes = Vertex> + Sync, const N: usize> Staged<Z, S, N> {
+    fn new(prepared: Prepared<Z, S, N>) -> Self {
+        let mut staged = Self { prepared, shaded: vec![], pieces: vec![], dot: Target::sized(1, 1) };
+        staged.run(Stage::Vertex);
+        staged.run(Stage::Clip);
+        staged
+    }
+
+    fn clip(&mut self) {
+        let Prepared { mesh, state, .. } = &self.prepared;
+        let planes = state.clip_volume.planes(state.depth_range);
+        let triangles = mesh.triangles().map(|triangle| triangle.map(|index| self.shaded[index]));
+        self.pieces.clear();
+        self.pieces.extend(triangles.flat_map(|triangle| {
+            let polygon = clip_triangle(triangle, &planes, state.clip_test);
+            let divided: ArrayVec<NdcVertex<N>, MAX_VERTICES> =
+                polygon.into_iter().map(NdcVertex::from).collect();
+            fan(divided)
+        }));
+    }
+}
+
+fn stages<Z: Rasterizer + Default + Send + 'static>(scene: Scene) -> Box<dyn Stages + Send>
+where
+    Z::Depth: Send,
+{
+    if scene.is_lit {
+        Box::new(Staged::new(Prepared::<Z, Lit, 5>::new(Lit::new(&scene), scene)))
+    } else {
+        Box::new(Staged::new(Prepared::<Z, Unlit, 2>::new(Unlit::new(&scene), scene)))
+    }
+}
+
+impl<Z: Rasterizer, S: Shader<N, Attributes = Vertex> + Sync, const N: usize> Stages for Staged<Z, S, N> {
+    fn run(&mut self, stage: Stage) {
+        let Prepared { rasterizer, shader, mesh, state, target } = &mut self.prepared;
+        let pieces = self.pieces.iter().copied();
+        match stage {
+            Stage::Clear => clear(target, state),
+            Stage::Vertex => {
+                self.shaded.clear();
+                self.shaded.extend(mesh.vertices().iter().map(|vertex| shader.vertex(vertex)));
+            }
+            Stage::Clip => self.clip(),
+            Stage::Setup => {
+                let viewport = Some(state.viewport_in(target.color.rect()));
+                let state = RenderState { viewport, ..*state };
+                rasterizer.draw(pieces, &state, &Discard(shader), &mut self.dot, &Silent);
+            }
+            Stage::Raster => rasterizer.draw(pieces, state, &Discard(shader), target, &Silent),
+            Stage::Shade => {
+                clear(target, state);
+                rasterizer.draw(pieces, state, shader, target, &Silent);
+            }
+            Stage::Frame => self.prepared.draw(),
+        }
+    }
+}
+
+/// Another shader's vertices, and no fragments.
+struct Discard<'a, S>(&'a S);
+
+impl<S: Shader<N>, const N: usize> Shader<N> for Discard<'_, S> {
+    type Attributes = S::Attributes;
+
+    fn vertex(&self, attributes: &S::Attributes) -> ClipVertex<N> {
+        self.0.vertex(attributes)
+    }
+
+    fn fragment<R: Real>(&self, _: [R; N]) -> Shaded<R> {
+        Shaded::opaque([R::of(0.0); 3]).discard(R::Mask::all(true))
+    }
+}
