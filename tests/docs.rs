@@ -91,6 +91,15 @@ fn every_include_has_its_anchor_and_every_anchor_its_page() {
 }
 
 #[test]
+fn the_readme_shows_a_history_as_it_is_told() {
+    let pinned = read(&root().join("tests/histories/ch05_perspective_correct__affine.snap"));
+    // Without the header, and without what is told with -v alone.
+    let told = pinned.splitn(4, '\n').nth(3).expect("a history");
+    let touched = told.split("\nWhat did not reach").next().expect("its beginning").trim_end();
+    assert!(read(&root().join("README.md")).contains(touched), "README.md shows an old history");
+}
+
+#[test]
 fn every_picture_and_every_link_exists() {
     for page in pages() {
         let text = read(&page);

@@ -275,6 +275,18 @@ fn odd_sizes_and_nothing_to_draw() {
 }
 
 #[test]
+fn a_small_window_on_a_huge_view() {
+    // Corners are thousands of pixels away, so that edge functions outgrow 32 bits, and 40.
+    let mesh = crowd(150, 23);
+    let shader = busy(AddressMode::Repeat, false);
+    for (x, width) in [(-700.0, 1500.0), (-3000.0, 6000.0), (-8000.0, 16_384.0), (-20_000.0, 40_000.0)] {
+        let viewport = Some(Viewport { x, y: x, width, height: width });
+        let state = RenderState { viewport, ..RenderState::default() };
+        compare(&mesh, &shader, &state, (150, 70));
+    }
+}
+
+#[test]
 fn thousands_of_clipped_triangles() {
     let mut next = numbers(99);
     let records = (0..9000)
