@@ -277,7 +277,15 @@ fn odd_sizes_and_nothing_to_draw() {
 #[test]
 fn a_small_window_on_a_huge_view() {
     // Corners are thousands of pixels away, so that edge functions outgrow 32 bits, and 40.
-    let mesh = crowd(150, 23);
+    let mut next = numbers(5);
+    let records = (0..90)
+        .map(|_| {
+            let w = 0.5 + next();
+            let place = dvec4((next() * 2.0 - 1.0) * w, (next() * 2.0 - 1.0) * w, (next() - 0.5) * w, w);
+            (place, from_fn(|_| next() * 200.0))
+        })
+        .collect();
+    let mesh = Mesh::unindexed(records).expect("whole triangles");
     let shader = busy(AddressMode::Repeat, false);
     for (x, width) in [(-700.0, 1500.0), (-3000.0, 6000.0), (-8000.0, 16_384.0), (-20_000.0, 40_000.0)] {
         let viewport = Some(Viewport { x, y: x, width, height: width });

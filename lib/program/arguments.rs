@@ -176,9 +176,13 @@ fn rasterizer(chapter: &Chapter) -> Arg {
         let named = RasterizerChoice::ALL.into_iter().find(|choice| choice.name() == name);
         named.unwrap_or_default()
     });
-    option("rasterizer", "NAME", "Fill triangles by the book's scanlines, or exactly by edge functions")
-        .value_parser(parse)
-        .hide(chapter.variants.iter().all(|variant| variant.rasterizer.is_none()))
+    option(
+        "rasterizer",
+        "NAME",
+        "Fill triangles by the book's scanlines, exactly by edge functions, or exactly and fast in tiles",
+    )
+    .value_parser(parse)
+    .hide(chapter.variants.iter().all(|variant| variant.rasterizer.is_none()))
 }
 
 fn how_to_draw(chapter: &Chapter) -> [Arg; 6] {

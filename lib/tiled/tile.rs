@@ -489,7 +489,7 @@ impl Edges for Narrow<'_> {
 /// A whole number of up to 40 bits as the sum of two `f32` that are exact: a multiple of 2¹⁶, and the rest.
 ///
 /// ```text
-///    E = high · 2¹⁶ + low        high: up to 24 bits        low: 16 bits, and 22 after a tile's 64 steps
+///    E = high · 2¹⁶ + low        high: up to 24 bits        low: 16 bits, and 20 after a tile's steps
 /// ```
 ///
 /// Both are stepped by additions that are exact; their sum is E, rounded once. Its sign is that of E.
