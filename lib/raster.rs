@@ -3,6 +3,38 @@
 //! A rasterizer takes a stream of triangles in NDC, the state, a shader, a target and a probe. What happens inside
 //! (culling, viewport, coverage, interpolation, shading, merging) is its own business: that is where rasterizers
 //! differ.
+//!
+//! ```
+//! use glam::{DVec3, dvec3};
+//! use rasterbook::Color;
+//! use rasterbook::clip::{ClipVertex, NdcVertex};
+//! use rasterbook::depth::Target;
+//! use rasterbook::pipeline::RenderState;
+//! use rasterbook::probe::Silent;
+//! use rasterbook::raster::{Rasterizer, Scanline};
+//! use rasterbook::real::Real;
+//! use rasterbook::shader::{Shaded, Shader};
+//!
+//! struct Green;
+//!
+//! impl Shader<0> for Green {
+//!     type Attributes = DVec3;
+//!     fn vertex(&self, ndc: &DVec3) -> ClipVertex<0> {
+//!         ClipVertex { position: ndc.extend(1.0), varyings: [] }
+//!     }
+//!     fn fragment<R: Real>(&self, _: [R; 0]) -> Shaded<R> {
+//!         Shaded::opaque([0.0, 255.0, 0.0].map(R::of))
+//!     }
+//! }
+//!
+//! // One triangle in NDC, as it comes from clipping and the divide.
+//! let corners = [dvec3(-1.0, -1.0, 0.0), dvec3(1.0, -1.0, 0.0), dvec3(0.0, 1.0, 0.0)];
+//! let triangle = corners.map(|position| NdcVertex { position, w: 1.0, varyings: [] });
+//! let (state, mut target) = (RenderState::default(), Target::new(32, 24));
+//! target.clear(Color::BLACK, state.clear_depth);
+//! Scanline.draw([triangle].into_iter(), &state, &Green, &mut target, &Silent);
+//! assert_eq!(target.color.get(16, 10), Some(Color::GREEN));
+//! ```
 
 use crate::area::{is_drawable, twice_signed_area};
 use crate::clip::NdcVertex;

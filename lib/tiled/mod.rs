@@ -52,6 +52,7 @@
 //! Sources: J. Pineda, A parallel algorithm for polygon rasterization, 1988; M. Abrash, Rasterization on Larrabee, 2009;
 //! S. Laine and T. Karras, High-performance software rasterization on GPUs, 2011.
 
+mod edges;
 mod front;
 mod tile;
 
