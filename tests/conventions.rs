@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 
-use glam::{DVec2, DVec4, dvec2, dvec3, dvec4};
+use glam::{DVec2, DVec3, DVec4, dvec2, dvec3, dvec4};
 use rasterbook::clip::{ClipTest, ClipVertex, ClipVolume, DepthRange, Plane, clip_triangle, fan};
 use rasterbook::cull::CullMode;
 use rasterbook::depth::{DepthBuffer, DepthTest, Target};
@@ -18,7 +18,7 @@ use rasterbook::real::Real;
 use rasterbook::scanline::{Corner, EdgeWalk, Payload, StepLimit, Walk, split};
 use rasterbook::shader::{Shaded, Shader};
 use rasterbook::texture::AddressMode;
-use rasterbook::transform::{perspective, perspective_divide};
+use rasterbook::transform::{Frustum, perspective, perspective_divide};
 use rasterbook::{Color, Rect};
 
 const WINDOW: Rect = Rect::sized(400, 400);
@@ -275,4 +275,52 @@ fn fragments_arrive_in_the_order_of_the_triangles() {
     // A triangle that is cut at the right border: its pieces come in the order of the fan.
     let (_, heard) = listen(&[([(-0.5, -0.5), (2.0, 0.0), (-0.5, 0.5)], RED)], &RenderState::default());
     assert_eq!(*heard.pieces.borrow(), 2);
+}
+
+// ---- Derivations that the pages give ------------------------------------------------------------------------------
+
+#[test]
+fn the_six_planes_are_the_walls_of_the_frustum() {
+    let view = Frustum { left: -1.5, right: 2.0, bottom: -0.5, top: 1.0, near: 2.0, far: 9.0 };
+    let Frustum { left, right, bottom, top, near, far } = view;
+    for i in 0..4000 {
+        // Points in and around the frustum, none of them on a wall.
+        let part = |k: i32| f64::from(i * k % 997) / 997.0 + 1e-4;
+        let point = dvec3(part(131) * 26.0 - 13.0, part(311) * 16.0 - 8.0, part(577) * 12.0);
+        let clip = view.project(point);
+        let on_glass = point * near / point.z;
+        let is_inside = [
+            on_glass.x > left,
+            on_glass.x < right,
+            on_glass.y > bottom,
+            on_glass.y < top,
+            point.z > near,
+            point.z < far,
+        ];
+        assert_eq!(Plane::CANONICAL.map(|plane| plane.signed_distance(clip) > 0.0), is_inside, "{point}");
+    }
+}
+
+#[test]
+fn the_way_on_the_screen_from_the_way_in_space() {
+    // t′ = t ωb / ((1 − t) ωa + t ωb), against points that are projected one by one.
+    let (a, b) = (dvec3(-3.0, 1.0, 2.0), dvec3(5.0, -4.0, 11.0));
+    let on_screen = |point: DVec3| point.x / point.z;
+    for i in 0..=20 {
+        let t = f64::from(i) / 20.0;
+        let measured = (on_screen(a + (b - a) * t) - on_screen(a)) / (on_screen(b) - on_screen(a));
+        assert!((measured - t * b.z / ((1.0 - t) * a.z + t * b.z)).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn a_step_of_a_z_buffer_grows_with_the_square_of_the_distance() {
+    // Δω ≈ Δ ω² (f − n) / (n f).
+    let (near, far, step) = (1.0, 100.0, 1e-7);
+    for w in [1.0, 2.0, 10.0, 50.0, 99.0] {
+        let z = rasterbook::depth::z_from_w(w, near, far);
+        let grown = rasterbook::depth::w_from_z(z + step, near, far) - w;
+        let expected = step * w * w * (far - near) / (near * far);
+        assert!((grown / expected - 1.0).abs() < 1e-3, "{grown} is not {expected} at {w}");
+    }
 }
