@@ -15,11 +15,14 @@ use crate::{Color, Framebuffer};
 /// How much memory the frames that are drawn at a time may take.
 const BATCH_BYTES: u64 = 1 << 28;
 
+/// Draws a frame. Not generic: the encoders are compiled once.
+pub(super) type Draw<'a> = &'a (dyn Fn(u32) -> Framebuffer + Sync);
+
 /// Draws all frames and puts them into one file.
 pub(super) fn encode(
     format: AnimationFormat,
     animation: Animation,
-    draw: impl Fn(u32) -> Framebuffer + Sync,
+    draw: Draw<'_>,
 ) -> Result<Vec<u8>, Box<dyn Error>> {
     match format {
         AnimationFormat::Gif => encode_gif(animation, draw),
@@ -62,10 +65,7 @@ pub(super) fn progress_bar(length: u64, what: &'static str) -> ProgressBar {
     }
 }
 
-fn encode_png(
-    animation: Animation,
-    draw: impl Fn(u32) -> Framebuffer + Sync,
-) -> Result<Vec<u8>, Box<dyn Error>> {
+fn encode_png(animation: Animation, draw: Draw<'_>) -> Result<Vec<u8>, Box<dyn Error>> {
     let (width, height) = size_of(&draw(0));
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
@@ -83,10 +83,7 @@ fn encode_png(
     Ok(bytes)
 }
 
-fn encode_gif(
-    animation: Animation,
-    draw: impl Fn(u32) -> Framebuffer + Sync,
-) -> Result<Vec<u8>, Box<dyn Error>> {
+fn encode_gif(animation: Animation, draw: Draw<'_>) -> Result<Vec<u8>, Box<dyn Error>> {
     let (width, height) = size_of(&draw(0));
     let mut bytes = Vec::new();
     let mut encoder = gif::Encoder::new(&mut bytes, u16::try_from(width)?, u16::try_from(height)?, &[])?;

@@ -265,7 +265,7 @@ fn animate(variant: &Variant, request: &Request, destination: &Destination) -> R
     let commission = Commission::new(variant, request, &Given::load(request, &[variant])?)?;
     let draw = |frame| enlarged(commission.draw(frame), request.zoom);
     let path =
-        destination.write_animation(&name_of(variant, request), |format| encode(format, animation, draw))?;
+        destination.write_animation(&name_of(variant, request), |format| encode(format, animation, &draw))?;
     say(&path.display().to_string())
 }
 
@@ -297,7 +297,7 @@ fn draw_recorded(variant: &Variant, request: &Request, destination: &Destination
     let path = if request.steps {
         let draw = |number| enlarged(steps.frame(number), request.zoom);
         let name = format!("{}-steps", name_of(variant, request));
-        destination.write_animation(&name, |format| encode(format, steps.animation(), draw))?
+        destination.write_animation(&name, |format| encode(format, steps.animation(), &draw))?
     } else {
         let (heat, legend) = steps.overdraw();
         note(&legend.join("\n"));
