@@ -34,11 +34,8 @@ pub fn history(
     sitting: &Sitting<'_>,
     pixel: (i32, i32),
 ) -> History {
-    let recorder = Arc::new(Recorder::new(Some(pixel)));
-    let sitting = Sitting { listener: Some(recorder.clone()), ..sitting.clone() };
-    let picture = variant.draw(&sitting);
-    let frame = variant.animation.map(|_| sitting.frame);
-    History { program, variant: variant.name, frame, ..History::of(&recorder.events(), &picture, pixel) }
+    let Heard { events, picture, frame } = listen(variant, sitting, Some(pixel));
+    History { program, variant: variant.name, frame, ..History::of(&events, &picture, pixel) }
 }
 
 /// The histories of several pixels; the picture is drawn once.
@@ -48,13 +45,25 @@ pub fn histories(
     sitting: &Sitting<'_>,
     pixels: impl IntoIterator<Item = (i32, i32)>,
 ) -> Vec<History> {
-    let recorder = Arc::new(Recorder::new(None));
-    let sitting = Sitting { listener: Some(recorder.clone()), ..sitting.clone() };
-    let picture = variant.draw(&sitting);
-    let (events, frame) = (recorder.events(), variant.animation.map(|_| sitting.frame));
+    let Heard { events, picture, frame } = listen(variant, sitting, None);
     let history =
         |pixel| History { program, variant: variant.name, frame, ..History::of(&events, &picture, pixel) };
     pixels.into_iter().map(history).collect()
+}
+
+/// A picture, and what was heard while it was drawn.
+struct Heard {
+    events: Vec<Event>,
+    picture: Framebuffer,
+    frame: Option<u32>,
+}
+
+/// Draws a variant and listens: to everything, or of what happens to pixels only to what concerns one.
+fn listen(variant: &Variant, sitting: &Sitting<'_>, watched: Option<Pixel>) -> Heard {
+    let recorder = Arc::new(Recorder::new(watched));
+    let picture = variant.draw(&Sitting { listener: Some(recorder.clone()), ..sitting.clone() });
+    let frame = variant.animation.map(|_| sitting.frame);
+    Heard { events: recorder.events(), picture, frame }
 }
 
 impl History {

@@ -126,7 +126,7 @@ fn draw_tiles<S: Shader<N>, const N: usize>(frame: &Frame<'_, S, N>, window: Rec
             for triangle in frame.front.triangles_in(frame.source, [column, row]) {
                 tile.draw(frame, triangle);
             }
-            tile.finish(frame);
+            tile.flush(frame);
         }
     });
 }

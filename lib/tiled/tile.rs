@@ -72,11 +72,6 @@ impl<'a> Tile<'a> {
         }
     }
 
-    /// Draws what still waits.
-    pub(super) fn finish<S: Shader<N>, const N: usize>(&mut self, frame: &Frame<'_, S, N>) {
-        self.flush(frame);
-    }
-
     /// Where a pixel stands in the rows.
     fn place(&self, x: i32, y: i32) -> usize {
         (y - self.rect.bottom) as usize * self.width + x as usize
@@ -137,7 +132,7 @@ impl<'a> Tile<'a> {
     }
 
     /// Shades all fragments that wait, and writes them one after the other.
-    fn flush<S: Shader<N>, const N: usize>(&mut self, frame: &Frame<'_, S, N>) {
+    pub(super) fn flush<S: Shader<N>, const N: usize>(&mut self, frame: &Frame<'_, S, N>) {
         let count = std::mem::take(&mut self.queue.count);
         if count == 0 {
             return;
