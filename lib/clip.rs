@@ -84,6 +84,12 @@ impl Plane {
         Self { normal: dvec4(0.0, 0.0, 0.0, 1.0), offset: -distance }
     }
 
+    /// The normal, and what is added.
+    #[cfg(feature = "tiled")]
+    pub(crate) const fn coefficients(&self) -> ([f64; 4], f64) {
+        (self.normal.to_array(), self.offset)
+    }
+
     /// How far inside a point is; negative outside.
     #[must_use]
     #[inline]

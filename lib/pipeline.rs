@@ -5,7 +5,7 @@
 //! use rasterbook::clip::ClipVertex;
 //! use rasterbook::depth::Target;
 //! use rasterbook::mesh::Mesh;
-//! use rasterbook::pipeline::{RenderState, draw};
+//! use rasterbook::pipeline::{LoadOp, RenderState, draw};
 //! use rasterbook::probe::Silent;
 //! use rasterbook::raster::Scanline;
 //! use rasterbook::real::Real;
@@ -26,9 +26,8 @@
 //!
 //! // A triangle whose upper right corner is cut off by the view volume.
 //! let mesh = Mesh::unindexed(vec![dvec4(-1.0, -1.0, 0.0, 1.0), dvec4(1.0, -1.0, 0.0, 1.0), dvec4(2.0, 2.0, 0.0, 1.0)])?;
-//! let state = RenderState::default();
+//! let state = RenderState { load: LoadOp::Clear, ..RenderState::default() };
 //! let mut target = Target::new(64, 48);
-//! target.clear(state.clear_color, state.clear_depth);
 //! draw(&mesh, &White, &state, &Scanline, &mut target, &Silent);
 //! assert_eq!(target.color.get(60, 40), Some(Color::WHITE));
 //! # Ok::<(), rasterbook::mesh::MeshError>(())
@@ -47,10 +46,24 @@ use crate::merge::Merge;
 use crate::mesh::Mesh;
 use crate::probe::{Assembled, Probe, Vertex};
 use crate::raster::Rasterizer;
+use crate::real::Real;
 use crate::scanline::Walk;
 use crate::shader::Shader;
 use crate::transform::Viewport;
 use crate::{Color, Rect};
+
+/// What is in the target when drawing begins.
+///
+/// A rasterizer that keeps a part of the picture near, as GPUs with tiles and [`tiled`](crate::tiled) do, need not fetch
+/// what is cleared anyway. Source: Vulkan specification, *Load operations*.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LoadOp {
+    /// What has been drawn before.
+    #[default]
+    Load,
+    /// The clear color and the clear depth, everywhere.
+    Clear,
+}
 
 /// How a mesh is drawn: plain data, and every default is the right one.
 ///
@@ -82,6 +95,8 @@ pub struct RenderState {
     pub depth_encoding: DepthEncoding,
     /// How a fragment meets what has been drawn before (stages 9 and 10).
     pub merge: Merge,
+    /// What is in the target when drawing begins.
+    pub load: LoadOp,
     /// The color of a pixel where nothing is drawn.
     pub clear_color: Color,
     /// The depth of a pixel where nothing is drawn.
@@ -101,6 +116,7 @@ impl Default for RenderState {
             interpolation: Interpolation::default(),
             depth_encoding: DepthEncoding::default(),
             merge: Merge::default(),
+            load: LoadOp::default(),
             clear_color: Color::BLACK,
             clear_depth: 1.0,
         }
@@ -130,6 +146,9 @@ pub fn draw<S: Shader<N>, Z: Rasterizer, P: Probe + ?Sized, const N: usize>(
     // A rasterizer may do all of it in a way of its own: then the picture is the same.
     if rasterizer.draw_mesh(mesh, shader, state, target) {
         return;
+    }
+    if state.load == LoadOp::Clear {
+        target.clear(state.clear_color, Z::Depth::of(state.clear_depth));
     }
 
     // 1. Vertex shading: every vertex once, however many triangles share it.

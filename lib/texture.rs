@@ -68,8 +68,8 @@ impl AddressMode {
     fn index<R: Real>(self, u: R, count: R) -> R {
         match self {
             Self::Clamp | Self::Mirror => self.apply((u * count).floor(), count),
-            // Not negative, so that cutting the fraction off later rounds down.
-            Self::Repeat => Self::Clamp.apply((u - u.floor()) * count, count),
+            // Never negative, so that cutting the fraction off later rounds down; what is no number gives way to the last.
+            Self::Repeat => ((u - u.floor()) * count).min(count - R::of(1.0)),
         }
     }
 }

@@ -13,7 +13,7 @@ use rasterbook::interpolate::Interpolation;
 use rasterbook::merge::{Merge, Verdict};
 use rasterbook::mesh::Mesh;
 use rasterbook::model::{Model, ModelVertex};
-use rasterbook::pipeline::{RenderState, draw};
+use rasterbook::pipeline::{LoadOp, RenderState, draw};
 use rasterbook::probe::{Assembled, FragmentEvent, Probe, Silent, Vertex};
 use rasterbook::raster::{Rasterizer, Scanline};
 use rasterbook::real::Real;
@@ -71,6 +71,18 @@ fn colors(target: &Target) -> Vec<Color> {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn a_load_operation_clears_as_clearing_does(points in triangles(0..4), color in any::<[u8; 3]>()) {
+        let [red, green, blue] = color;
+        let state = RenderState { clear_color: Color::rgb(red, green, blue), clear_depth: 0.9, ..RenderState::default() };
+        let cleared = render(&points, state, &Silent);
+        let mesh = Mesh::unindexed(points).expect("whole triangles");
+        let mut target = Target::new(SIZE.0, SIZE.1);
+        target.clear(Color::WHITE, -1.0);
+        draw(&mesh, &Places, &RenderState { load: LoadOp::Clear, ..state }, &Scanline, &mut target, &Silent);
+        prop_assert!(target.color == cleared.color && target.depth == cleared.depth);
+    }
 
     #[test]
     fn clockwise_and_counter_clockwise_make_all(points in triangles(1..6)) {

@@ -4,11 +4,11 @@
 mod chapters;
 
 use std::array::from_fn;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use chapters::CHAPTERS;
-use glam::{DVec4, dvec4};
+use glam::{DVec2, DVec4, dvec2, dvec4};
 use proptest::prelude::*;
-use rasterbook::Color;
 use rasterbook::area::Winding;
 use rasterbook::clip::{ClipVertex, ClipVolume, DepthRange};
 use rasterbook::cull::CullMode;
@@ -17,16 +17,17 @@ use rasterbook::edge::Exact;
 use rasterbook::interpolate::Interpolation;
 use rasterbook::merge::{Blend, Merge};
 use rasterbook::mesh::Mesh;
-use rasterbook::pipeline::{RenderState, draw};
+use rasterbook::pipeline::{LoadOp, RenderState, draw};
 use rasterbook::probe::Silent;
 use rasterbook::program::{RasterizerChoice, Sitting};
-use rasterbook::raster::Rasterizer;
+use rasterbook::raster::{Rasterizer, Scanline};
 use rasterbook::real::Real;
 use rasterbook::shader::{Shaded, Shader};
 use rasterbook::texture::{AddressMode, Texture};
 use rasterbook::tiled::Tiled;
 use rasterbook::transform::Viewport;
 use rasterbook::varyings::Derivatives;
+use rasterbook::{Color, Framebuffer};
 
 /// A vertex in clip space, with a color and texture coordinates.
 type Record = (DVec4, [f64; 5]);
@@ -173,6 +174,7 @@ fn state() -> impl Strategy<Value = RenderState> {
     );
     (modes, any::<bool>(), any::<bool>(), any::<bool>()).prop_map(|(modes, depth_write, is_zero, is_part)| {
         let (cull, front_face, depth_test, blend, interpolation, depth_encoding, clip_volume) = modes;
+        let load = if is_zero { LoadOp::Clear } else { LoadOp::Load };
         let viewport = is_part.then_some(Viewport { x: 11.0, y: 5.5, width: 50.0, height: 33.0 });
         RenderState {
             cull,
@@ -183,6 +185,8 @@ fn state() -> impl Strategy<Value = RenderState> {
             clip_volume,
             depth_range: if is_zero { DepthRange::ZeroToOne } else { DepthRange::NegativeOneToOne },
             viewport,
+            load,
+            clear_color: Color::rgb(40, 5, 60),
             clear_depth: if depth_test == DepthTest::Greater { -1.0 } else { 4.0 },
             ..RenderState::default()
         }
@@ -319,7 +323,7 @@ fn every_variant_of_the_pipeline() {
                 |rasterizer| variant.draw(&Sitting { rasterizer, ..variant.sitting(subject.as_ref()) });
             let [scanline, edge, tiled] =
                 [RasterizerChoice::Scanline, RasterizerChoice::Edge, RasterizerChoice::Tiled].map(picture);
-            let differ = |a: &rasterbook::Framebuffer, b: &rasterbook::Framebuffer, by: u8| {
+            let differ = |a: &Framebuffer, b: &Framebuffer, by: u8| {
                 a.rows_from_top()
                     .flatten()
                     .zip(b.rows_from_top().flatten())
@@ -333,8 +337,135 @@ fn every_variant_of_the_pipeline() {
                 "{}: {off} pixels differ from the exact rasterizer",
                 variant.name
             );
-            // The book's rule puts pixels elsewhere, by less than one: what differs lies along edges and texels.
-            assert!(differ(&scanline, &edge, 255) == 0);
+            // The book's rule puts pixels elsewhere, by less than one. Where texels are smaller than pixels, that shows.
+            let (off, pixels) =
+                (displaced(&scanline, &edge), variant.size.0 as usize * variant.size.1 as usize);
+            assert!(off <= pixels / 25, "{}: scanline shows what is not near in {off} pixels", variant.name);
         }
     }
+}
+
+/// How many pixels of a picture have a channel that is darker or brighter, by more than 2, than all of the other
+/// picture's pixels there and next to it.
+fn displaced(picture: &Framebuffer, other: &Framebuffer) -> usize {
+    let rect = picture.rect();
+    let is_displaced = |&(x, y): &(i32, i32)| {
+        let color = picture.get(x, y).expect("inside").channels();
+        let near = (y - 1..=y + 1).flat_map(|y| (x - 1..=x + 1).map(move |x| (x, y)));
+        let around: Vec<_> = near.filter_map(|(x, y)| other.get(x, y)).map(Color::channels).collect();
+        (0..3).any(|k| {
+            let channels = || around.iter().map(|color| color[k]);
+            let (least, most) = (channels().min().expect("itself"), channels().max().expect("itself"));
+            !(least.saturating_sub(2)..=most.saturating_add(2)).contains(&color[k])
+        })
+    };
+    rect.rows().flat_map(|y| rect.columns().map(move |x| (x, y))).filter(is_displaced).count()
+}
+
+#[test]
+fn the_books_rule_covers_other_pixels_only_along_edges() {
+    // Corners move to whole columns and rows, by √½ at most, and pixels are sampled at their corners, √½ from their
+    // centers: √2 together, and a little more where an edge is steep.
+    const BOUND: f64 = 2.0;
+    let size = (80, 60);
+    let mut next = numbers(21);
+    for _ in 0..400 {
+        let corners: [DVec2; 3] = from_fn(|_| dvec2(next() * 76.0 + 2.0, next() * 56.0 + 2.0));
+        let records = corners
+            .map(|p| (dvec4(p.x / 40.0 - 1.0, p.y / 30.0 - 1.0, 0.0, 1.0), [200.0, 0.0, 0.0, 0.5, 0.5]));
+        let mesh = Mesh::unindexed(records.to_vec()).expect("a triangle");
+        let (shader, state) = (busy(AddressMode::Repeat, false), RenderState::default());
+        let [mut book, mut exact] = [Target::new(size.0, size.1), Target::new(size.0, size.1)];
+        for target in [&mut book, &mut exact] {
+            target.clear(Color::BLACK, 1.0);
+        }
+        draw(&mesh, &shader, &state, &Scanline, &mut book, &Silent);
+        draw(&mesh, &shader, &state, &Exact::<f64>::new(), &mut exact, &Silent);
+        for (x, y) in book.color.rect().rows().flat_map(|y| (0..80).map(move |x| (x, y))) {
+            let covered = [&book, &exact].map(|target| target.depth.get(x, y) != Some(1.0));
+            let center = dvec2(f64::from(x) + 0.5, f64::from(y) + 0.5);
+            let distance =
+                (0..3).map(|i| to_segment(center, corners[i], corners[(i + 1) % 3])).fold(9.0, f64::min);
+            assert!(
+                covered[0] == covered[1] || distance <= BOUND,
+                "({x}, {y}) is {distance} from the edges of {corners:?}"
+            );
+        }
+    }
+}
+
+/// How far a point is from a segment.
+fn to_segment(point: DVec2, from: DVec2, to: DVec2) -> f64 {
+    let along = to - from;
+    let t = ((point - from).dot(along) / along.length_squared()).clamp(0.0, 1.0);
+    point.distance(from + along * t)
+}
+
+/// A color, perhaps with a hole, and how often it was asked for.
+#[derive(Default)]
+struct Counted {
+    asked: AtomicUsize,
+    has_holes: bool,
+}
+
+impl Shader<5> for Counted {
+    type Attributes = Record;
+
+    fn vertex(&self, &(position, varyings): &Record) -> ClipVertex<5> {
+        ClipVertex { position, varyings }
+    }
+
+    fn fragment<R: Real>(&self, [r, g, b, u, v]: [R; 5]) -> Shaded<R> {
+        self.asked.fetch_add(1, Ordering::Relaxed);
+        let radius = R::of(f64::from(u8::from(self.has_holes)));
+        Shaded::opaque([r, g, b]).discard((u * u + v * v).is_less(radius))
+    }
+}
+
+/// Leaning layers, each of two triangles and larger than the view, at these depths; their holes are anywhere.
+fn layers(depths: &[f64], mut next: impl FnMut() -> f64) -> Mesh<Record> {
+    let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+    let mut records = Vec::new();
+    for &depth in depths {
+        let (lean_x, lean_y, w, color) =
+            (next() * 0.1, next() * 0.1, 0.5 + next(), from_fn(|_| next() * 255.0));
+        for (x, y) in corners.map(|(x, y)| (x * 1.1, y * 1.1)) {
+            let [r, g, b]: [f64; 3] = color;
+            let z = depth + x * lean_x + y * lean_y;
+            let from_hole = [x - 1.0 + r / 127.0, y - 1.0 + g / 127.0].map(|way| way * 6.0);
+            records.push((dvec4(x, y, z, 1.0) * w, [r, g, b, from_hole[0], from_hole[1]]));
+        }
+    }
+    Mesh::unindexed(records).expect("whole triangles")
+}
+
+#[test]
+fn layers_in_any_order() {
+    let mut next = numbers(8);
+    for round in 0..60 {
+        // Some are equally deep, and the leaning ones pass through each other.
+        let depths: Vec<f64> = (0..1 + round % 12).map(|_| (next() * 8.0).floor() / 10.0 - 0.4).collect();
+        let mesh = layers(&depths, &mut next);
+        let state = RenderState { load: LoadOp::Clear, ..RenderState::default() };
+        compare(&mesh, &Counted::default(), &state, (333, 131));
+        compare(&mesh, &Counted { has_holes: true, ..Counted::default() }, &state, (333, 131));
+    }
+}
+
+#[test]
+fn what_is_hidden_in_all_of_a_tile_is_not_shaded() {
+    let count = |depths: &[f64]| {
+        let shader = Counted::default();
+        let state = RenderState { load: LoadOp::Clear, ..RenderState::default() };
+        let mesh = layers(depths, || 0.0);
+        draw_with(&mesh, &shader, &state, &Tiled::new(), (640, 320));
+        shader.asked.into_inner()
+    };
+    let one = count(&[0.0]);
+    let eight: Vec<f64> = (0..8).map(|i| 0.8 - 0.1 * f64::from(i)).collect();
+    let backwards: Vec<f64> = eight.iter().rev().copied().collect();
+    assert!(one >= 640 * 320 / 8);
+    // Along the diagonal no triangle covers a tile alone.
+    assert!(count(&eight) < 3 * one, "the farthest first");
+    assert!(count(&backwards) < 3 * one, "the nearest first");
 }

@@ -1,6 +1,7 @@
 //! Edge functions for eight pixels at a time: in as few bits as do, and always exact.
 
 use std::array::from_fn;
+use std::ops::Add;
 
 use wide::i32x8;
 
@@ -78,20 +79,86 @@ pub(super) fn is_narrow([a, b, c]: [Place; 3]) -> bool {
 }
 
 /// An edge function at eight neighboring centers from a point on, if its values fit into 32 bits.
-pub(super) fn narrow_lanes(edge: &EdgeFunction, start: [i64; 2]) -> i32x8 {
+fn narrow_lanes(edge: &EdgeFunction, start: [i64; 2]) -> i32x8 {
     let step = (edge.step_x * SUBPIXELS) as i32;
     i32x8::splat(edge.at(start) as i32) + i32x8::splat(step) * i32x8::new([0, 1, 2, 3, 4, 5, 6, 7])
 }
 
-/// The edge functions along a row, eight centers at a time.
+// ANCHOR: small_setup
+/// The three edges of a triangle of a few pixels, in 32-bit integers.
+pub(super) struct SmallSetup {
+    /// The values at the first center.
+    start: [i32; 3],
+    /// How they change from pixel to pixel, to the right and upwards.
+    right: [i32; 3],
+    up: [i32; 3],
+    /// As in [`Setup`].
+    shy: [i32; 3],
+    one_over_area: f32,
+}
+
+impl SmallSetup {
+    /// The edges, seen from the center of a pixel.
+    pub(super) fn new(places: [Place; 3], [x, y]: [i32; 2]) -> Self {
+        const PIXEL: i32 = SUBPIXELS as i32;
+        let [a, b, c] =
+            places.map(|place| [place[0] - (x * PIXEL + PIXEL / 2), place[1] - (y * PIXEL + PIXEL / 2)]);
+        let cross = |a: Place, b: Place| a[0] * b[1] - a[1] * b[0];
+        // Seen from the origin, E is the cross product of the ends; the three of them make up the area.
+        let start = [cross(b, c), cross(c, a), cross(a, b)];
+        let area = start[0] + start[1] + start[2];
+        let sign = area.signum();
+        let edges = [[b, c], [c, a], [a, b]];
+        let right = edges.map(|[from, to]| (from[1] - to[1]) * sign);
+        let up = edges.map(|[from, to]| (to[0] - from[0]) * sign);
+        let is_top_left = |i: usize| right[i] > 0 || (right[i] == 0 && up[i] < 0);
+        Self {
+            start: start.map(|value| value * sign),
+            right: right.map(|step| step * PIXEL),
+            up: up.map(|step| step * PIXEL),
+            shy: from_fn(|i| i32::from(!is_top_left(i))),
+            one_over_area: 1.0 / (area.abs() as f32),
+        }
+    }
+
+    /// Which pixels of an area of at most 8 × 8 are covered: a bit each, eight for a row.
+    #[inline]
+    pub(super) fn covered(&self, area: Rect) -> u64 {
+        let number = i32x8::new([0, 1, 2, 3, 4, 5, 6, 7]);
+        let mut values: [i32x8; 3] =
+            from_fn(|i| i32x8::splat(self.start[i] - self.shy[i]) + i32x8::splat(self.right[i]) * number);
+        let up = self.up.map(i32x8::splat);
+        let columns = (1_u64 << area.columns().len()) - 1;
+        let mut covered = 0;
+        for row in 0..area.rows().len() {
+            // A sign bit in any of the three says that the pixel is outside.
+            let outside = (values[0] | values[1] | values[2]).move_mask();
+            covered |= (!(outside as u64) & columns) << (8 * row);
+            values = from_fn(|i| values[i] + up[i]);
+        }
+        covered
+    }
+
+    /// The weights of the second and the third vertex so many pixels to the right and above the first center.
+    #[inline]
+    pub(super) fn weights(&self, column: i32, row: i32) -> [f32; 2] {
+        [1, 2]
+            .map(|i| (self.start[i] + self.right[i] * column + self.up[i] * row) as f32 * self.one_over_area)
+    }
+}
+// ANCHOR_END: small_setup
+
+/// The edge functions in an area, eight centers at a time: from the lowest row up, and in a row from left to right.
 pub(super) trait Edges {
     /// The values at eight neighboring centers.
-    type Group;
+    type Group: Copy;
 
-    /// The first group of a row.
-    fn row(&self, y: i32) -> Self::Group;
+    /// The first eight of the lowest row.
+    fn first(&self) -> Self::Group;
+    /// The same columns, a row higher.
+    fn step_up(&self, group: &mut Self::Group);
     /// The next eight.
-    fn step(&self, group: &mut Self::Group);
+    fn step_right(&self, group: &mut Self::Group);
     /// Which of the eight are covered.
     fn covered(&self, group: &Self::Group) -> LaneMask;
     /// The values that belong to the second and the third vertex, each rounded once.
@@ -99,32 +166,42 @@ pub(super) trait Edges {
 }
 
 /// In 32-bit integers, for triangles that are not too large.
-pub(super) struct Narrow<'a> {
-    setup: &'a Setup,
-    left: i32,
-    steps: [i32x8; 3],
+pub(super) struct Narrow {
+    first: [i32x8; 3],
+    right: [i32x8; 3],
+    up: [i32x8; 3],
     shy: [i32x8; 3],
 }
 
-impl<'a> Narrow<'a> {
-    pub(super) fn new(setup: &'a Setup, left: i32) -> Self {
-        let step = |edge: EdgeFunction| i32x8::splat((edge.step_x * SUBPIXELS) as i32 * LANES as i32);
-        let shy = setup.shy.map(|shy| i32x8::splat(shy as i32));
-        Self { setup, left, steps: setup.edges.map(step), shy }
+impl Narrow {
+    /// The edges of a triangle in an area.
+    pub(super) fn new(setup: &Setup, area: Rect) -> Self {
+        let step = |step: i64| i32x8::splat((step * SUBPIXELS) as i32);
+        Self {
+            first: setup.edges.map(|edge| narrow_lanes(&edge, center(area.left, area.bottom))),
+            right: setup.edges.map(|edge| step(edge.step_x * LANES as i64)),
+            up: setup.edges.map(|edge| step(edge.step_y)),
+            shy: setup.shy.map(|shy| i32x8::splat(shy as i32)),
+        }
     }
 }
 
-impl Edges for Narrow<'_> {
+impl Edges for Narrow {
     type Group = [i32x8; 3];
 
     #[inline(always)]
-    fn row(&self, y: i32) -> [i32x8; 3] {
-        from_fn(|i| narrow_lanes(&self.setup.edges[i], center(self.left, y)))
+    fn first(&self) -> [i32x8; 3] {
+        self.first
     }
 
     #[inline(always)]
-    fn step(&self, group: &mut [i32x8; 3]) {
-        *group = from_fn(|i| group[i] + self.steps[i]);
+    fn step_up(&self, group: &mut [i32x8; 3]) {
+        *group = from_fn(|i| group[i] + self.up[i]);
+    }
+
+    #[inline(always)]
+    fn step_right(&self, group: &mut [i32x8; 3]) {
+        *group = from_fn(|i| group[i] + self.right[i]);
     }
 
     #[inline(always)]
@@ -143,7 +220,7 @@ impl Edges for Narrow<'_> {
 /// A whole number of up to 40 bits as the sum of two `f32` that are exact: a multiple of 2¹⁶, and the rest.
 ///
 /// ```text
-///    E = high · 2¹⁶ + low        high: up to 24 bits        low: 16 bits, and 20 after a tile's steps
+///    E = high · 2¹⁶ + low        high: up to 24 bits        low: 16 bits, and 22 after a tile's steps
 /// ```
 ///
 /// Both are stepped by additions that are exact; their sum is E, rounded once. Its sign is that of E.
@@ -168,34 +245,52 @@ impl Parts {
 }
 // ANCHOR_END: split
 
+impl Add for Parts {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self { high: self.high + other.high, low: self.low + other.low }
+    }
+}
+
 /// In [`Parts`]. With `INSIDE` all centers are known to be covered, and nothing is asked.
-pub(super) struct Split<'a, const INSIDE: bool> {
-    setup: &'a Setup,
-    left: i32,
-    steps: [Parts; 3],
+pub(super) struct Split<const INSIDE: bool> {
+    first: [Parts; 3],
+    right: [Parts; 3],
+    up: [Parts; 3],
     shy: [Lanes; 3],
 }
 
-impl<'a, const INSIDE: bool> Split<'a, INSIDE> {
-    pub(super) fn new(setup: &'a Setup, left: i32) -> Self {
-        let steps = setup.edges.map(|edge| Parts::same(edge.step_x * SUBPIXELS * LANES as i64));
-        Self { setup, left, steps, shy: setup.shy.map(|shy| Lanes::splat(shy as f32)) }
+impl<const INSIDE: bool> Split<INSIDE> {
+    /// The edges of a triangle in an area.
+    pub(super) fn new(setup: &Setup, area: Rect) -> Self {
+        let start = center(area.left, area.bottom);
+        Self {
+            first: setup.edges.map(|edge| Parts::stepping(edge.at(start), edge.step_x * SUBPIXELS)),
+            right: setup.edges.map(|edge| Parts::same(edge.step_x * SUBPIXELS * LANES as i64)),
+            up: setup.edges.map(|edge| Parts::same(edge.step_y * SUBPIXELS)),
+            shy: setup.shy.map(|shy| Lanes::splat(shy as f32)),
+        }
     }
 }
 
-impl<const INSIDE: bool> Edges for Split<'_, INSIDE> {
+impl<const INSIDE: bool> Edges for Split<INSIDE> {
     type Group = [Parts; 3];
 
     #[inline(always)]
-    fn row(&self, y: i32) -> [Parts; 3] {
-        self.setup.edges.map(|edge| Parts::stepping(edge.at(center(self.left, y)), edge.step_x * SUBPIXELS))
+    fn first(&self) -> [Parts; 3] {
+        self.first
     }
 
     #[inline(always)]
-    fn step(&self, group: &mut [Parts; 3]) {
-        for (parts, step) in group.iter_mut().zip(&self.steps).skip(usize::from(INSIDE)) {
-            *parts = Parts { high: parts.high + step.high, low: parts.low + step.low };
-        }
+    fn step_up(&self, group: &mut [Parts; 3]) {
+        *group = from_fn(|i| group[i] + self.up[i]);
+    }
+
+    #[inline(always)]
+    fn step_right(&self, group: &mut [Parts; 3]) {
+        *group = from_fn(|i| group[i] + self.right[i]);
     }
 
     #[inline(always)]
@@ -217,20 +312,32 @@ impl<const INSIDE: bool> Edges for Split<'_, INSIDE> {
 /// In 64-bit integers: for triangles of thousands of pixels on a side, seen from near their corners.
 pub(super) struct Huge<'a> {
     pub(super) setup: &'a Setup,
-    pub(super) left: i32,
+    pub(super) area: Rect,
+}
+
+impl Huge<'_> {
+    /// Adds a step to each edge function.
+    fn step(&self, group: &mut <Self as Edges>::Group, step: impl Fn(&EdgeFunction) -> i64) {
+        for (values, edge) in group.iter_mut().zip(&self.setup.edges) {
+            values.iter_mut().for_each(|value| *value += step(edge) * SUBPIXELS);
+        }
+    }
 }
 
 impl Edges for Huge<'_> {
     type Group = [[i64; LANES]; 3];
 
-    fn row(&self, y: i32) -> Self::Group {
-        self.setup.edges.map(|edge| from_fn(|lane| edge.at(center(self.left + lane as i32, y))))
+    fn first(&self) -> Self::Group {
+        let Rect { left, bottom, .. } = self.area;
+        self.setup.edges.map(|edge| from_fn(|lane| edge.at(center(left + lane as i32, bottom))))
     }
 
-    fn step(&self, group: &mut Self::Group) {
-        for (values, edge) in group.iter_mut().zip(&self.setup.edges) {
-            values.iter_mut().for_each(|value| *value += edge.step_x * SUBPIXELS * LANES as i64);
-        }
+    fn step_up(&self, group: &mut Self::Group) {
+        self.step(group, |edge| edge.step_y);
+    }
+
+    fn step_right(&self, group: &mut Self::Group) {
+        self.step(group, |edge| edge.step_x * LANES as i64);
     }
 
     fn covered(&self, group: &Self::Group) -> LaneMask {

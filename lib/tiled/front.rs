@@ -1,13 +1,16 @@
 //! The front end: from vertices to lists of triangles for each tile. All of it runs on all threads.
 
+use std::array::from_fn;
+
 use arrayvec::ArrayVec;
+use glam::DVec4;
 use rayon::prelude::*;
-use wide::f32x8;
+use wide::{CmpGe, f32x8, f64x4};
 
 use super::{TILE_HEIGHT, TILE_WIDTH};
 use crate::Rect;
 use crate::area::Winding;
-use crate::clip::{ClipVertex, NdcVertex, Plane, clip_triangle, fan};
+use crate::clip::{ClipTest, ClipVertex, NdcVertex, Plane, clip_triangle, fan};
 use crate::edge::{SUBPIXELS, cut_to_guard_band, is_in_guard_band, snap};
 use crate::interpolate::Interpolation;
 use crate::lanes::LANES;
@@ -50,6 +53,8 @@ struct Chunk {
     bins: Vec<Vec<u32>>,
     /// Pieces of clipped triangles, three vertices each.
     extra: Vertices,
+    /// Whether a triangle is as large as a tile.
+    has_large: bool,
 }
 
 /// Marks the number of a piece among a chunk's own.
@@ -80,6 +85,7 @@ struct Context<'a> {
     viewport: Viewport,
     window: Rect,
     planes: ArrayVec<Plane, 6>,
+    sides: Sides,
     blocks: usize,
     columns: usize,
     tiles: usize,
@@ -96,11 +102,13 @@ impl Front {
     ) {
         let tiles = |pixels: i32, side: i32| (pixels as usize).div_ceil(side as usize);
         let (columns, rows) = (tiles(window.right, TILE_WIDTH), tiles(window.top, TILE_HEIGHT));
+        let planes = state.clip_volume.planes(state.depth_range);
         let context = Context {
             state,
+            sides: Sides::new(&planes),
             viewport: state.viewport_in(window),
             window,
-            planes: state.clip_volume.planes(state.depth_range),
+            planes,
             blocks: (N + 2).div_ceil(LANES),
             columns,
             tiles: columns * rows,
@@ -140,6 +148,16 @@ impl Front {
                 assemble(vertices, chunk, number);
             }
         });
+    }
+
+    /// Whether some triangle may cover all of a tile.
+    pub(super) fn has_large_triangles(&self) -> bool {
+        self.chunks.iter().any(|chunk| chunk.has_large)
+    }
+
+    /// Whether no triangle touches a tile.
+    pub(super) fn is_empty(&self, [column, row]: [usize; 2]) -> bool {
+        self.chunks.iter().all(|chunk| chunk.bins[row * self.columns + column].is_empty())
     }
 
     /// The triangles that may touch a tile, in order.
@@ -210,17 +228,46 @@ impl Vertices {
     }
 }
 
+/// The planes of the view volume, four at a time, and the components of their normals apart.
+struct Sides([Side; 2]);
+
+/// Four planes.
+struct Side {
+    normal: [f64x4; 4],
+    offset: f64x4,
+}
+
+impl Sides {
+    fn new(planes: &[Plane]) -> Self {
+        // What lies on no side of anything is outside of nothing.
+        let plane = |i: usize| planes.get(i).map_or(([0.0; 4], 0.0), Plane::coefficients);
+        Self([0, 4].map(|from| Side {
+            normal: from_fn(|k| f64x4::new(from_fn(|i| plane(from + i).0[k]))),
+            offset: f64x4::new(from_fn(|i| plane(from + i).1)),
+        }))
+    }
+
+    /// A bit for each plane on whose wrong side a point is.
+    #[inline]
+    fn outside(&self, position: DVec4) -> u8 {
+        let [x, y, z, w] = position.to_array().map(f64x4::splat);
+        let bits = |Side { normal, offset }: &Side| {
+            let distance = normal[0] * x + normal[1] * y + normal[2] * z + normal[3] * w + *offset;
+            0xF & !distance.cmp_ge(f64x4::ZERO).move_mask() as u8
+        };
+        bits(&self.0[0]) | bits(&self.0[1]) << 4
+    }
+}
+
 /// Which planes a vertex lies outside of.
+#[inline]
 fn outside_of<const N: usize>(vertex: &ClipVertex<N>, context: &Context<'_>) -> u8 {
-    if !vertex.position.is_finite() {
-        return NOWHERE;
+    let position = vertex.position;
+    match context.state.clip_test {
+        _ if !position.is_finite() => NOWHERE,
+        ClipTest::BeforeDivide => context.sides.outside(position),
+        ClipTest::AfterDivide => context.sides.outside(position / position.w),
     }
-    let mut outside = 0;
-    for (i, plane) in context.planes.iter().enumerate() {
-        let is_inside = context.state.clip_test.signed_distance(plane, vertex.position) >= 0.0;
-        outside |= u8::from(!is_inside) << i;
-    }
-    outside
 }
 
 impl Context<'_> {
@@ -234,7 +281,7 @@ fn write_record<const N: usize>(vertex: &NdcVertex<N>, interpolation: Interpolat
     let corner = CornerVaryings::<f32, N>::new(vertex, interpolation);
     let mut numbers = [corner.distance, corner.depth].into_iter().chain(corner.values);
     for block in record {
-        *block = f32x8::new(std::array::from_fn(|_| numbers.next().unwrap_or(0.0)));
+        *block = f32x8::new(from_fn(|_| numbers.next().unwrap_or(0.0)));
     }
 }
 
@@ -271,6 +318,7 @@ impl Chunk {
         self.bins.resize_with(context.tiles, Vec::new);
         self.bins.iter_mut().for_each(Vec::clear);
         self.extra.resize(0, context.blocks);
+        self.has_large = false;
     }
 
     /// Adds a piece with vertices of its own.
@@ -308,6 +356,7 @@ impl Chunk {
             return;
         }
         let Some(Rect { left, bottom, right, top }) = bounding_box(places, context.window) else { return };
+        self.has_large |= right - left >= TILE_WIDTH && top - bottom >= TILE_HEIGHT;
         for row in bottom / TILE_HEIGHT..=(top - 1) / TILE_HEIGHT {
             for column in left / TILE_WIDTH..=(right - 1) / TILE_WIDTH {
                 self.bins[row as usize * context.columns + column as usize].push(number);

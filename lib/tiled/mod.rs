@@ -23,7 +23,7 @@
 //! use rasterbook::clip::ClipVertex;
 //! use rasterbook::depth::Target;
 //! use rasterbook::mesh::Mesh;
-//! use rasterbook::pipeline::{RenderState, draw};
+//! use rasterbook::pipeline::{LoadOp, RenderState, draw};
 //! use rasterbook::probe::Silent;
 //! use rasterbook::real::Real;
 //! use rasterbook::shader::{Shaded, Shader};
@@ -42,9 +42,9 @@
 //! }
 //!
 //! let mesh = Mesh::unindexed(vec![dvec4(-1.0, -1.0, 0.0, 1.0), dvec4(3.0, -1.0, 0.0, 1.0), dvec4(-1.0, 3.0, 0.0, 1.0)])?;
+//! let state = RenderState { load: LoadOp::Clear, ..RenderState::default() };
 //! let mut target = Target::<f32>::sized(640, 480);
-//! target.clear(Color::BLACK, 1.0);
-//! draw(&mesh, &Red, &RenderState::default(), &Tiled::new(), &mut target, &Silent);
+//! draw(&mesh, &Red, &state, &Tiled::new(), &mut target, &Silent);
 //! assert_eq!(target.color.get(639, 479), Some(Color::RED));
 //! # Ok::<(), rasterbook::mesh::MeshError>(())
 //! ```
@@ -54,20 +54,23 @@
 
 mod edges;
 mod front;
+mod occlusion;
 mod tile;
 
+use std::ops::Range;
 use std::sync::Mutex;
+use std::sync::atomic::AtomicBool;
 
 use rayon::prelude::*;
 
-use crate::Rect;
 use crate::clip::NdcVertex;
 use crate::depth::Target;
 use crate::mesh::Mesh;
-use crate::pipeline::RenderState;
+use crate::pipeline::{LoadOp, RenderState};
 use crate::probe::Probe;
 use crate::raster::Rasterizer;
 use crate::shader::Shader;
+use crate::{Color, Rect};
 
 use front::{Front, Source};
 use tile::{Frame, Tile};
@@ -104,8 +107,12 @@ impl Tiled {
         let mut own = Front::default();
         let mut shared = self.front.try_lock();
         let front = shared.as_deref_mut().unwrap_or(&mut own);
-        front.prepare(source, shader, state, window);
-        draw_tiles(&Frame { shader, state, front, source }, window, target);
+        // Into the pool once, not once for each of the steps.
+        rayon::scope(|_| {
+            front.prepare(source, shader, state, window);
+            let frame = Frame { shader, state, front, source, discards: AtomicBool::new(false) };
+            draw_tiles(&frame, window, target);
+        });
     }
 }
 
@@ -113,22 +120,66 @@ impl Tiled {
 /// Draws all tiles; a row of tiles is a part of the picture that belongs to one thread alone.
 fn draw_tiles<S: Shader<N>, const N: usize>(frame: &Frame<'_, S, N>, window: Rect, target: &mut Target<f32>) {
     let width = window.right as usize;
-    let band = width * TILE_HEIGHT as usize;
+    let pixels = width * TILE_HEIGHT as usize;
     let (colors, depths) = (target.color.pixels_mut(), target.depth.values_mut());
-    let bands = colors.par_chunks_mut(band).zip(depths.par_chunks_mut(band)).enumerate();
+    let bands = colors.par_chunks_mut(pixels).zip(depths.par_chunks_mut(pixels)).enumerate();
     bands.for_each(|(row, (colors, depths))| {
         let bottom = row as i32 * TILE_HEIGHT;
-        for (column, left) in (0..window.right).step_by(TILE_WIDTH as usize).enumerate() {
-            let (right, top) =
-                ((left + TILE_WIDTH).min(window.right), (bottom + TILE_HEIGHT).min(window.top));
-            let rect = Rect { left, bottom, right, top };
-            let mut tile = Tile::new(rect, width, colors, depths);
-            for triangle in frame.front.triangles_in(frame.source, [column, row]) {
-                tile.draw(frame, triangle);
-            }
-            tile.flush(frame);
-        }
+        let rect = Rect { bottom, top: (bottom + TILE_HEIGHT).min(window.top), ..window };
+        Band { rect, colors, depths }.draw(frame, row);
     });
+}
+
+/// The rows of a picture in which a row of tiles lies.
+struct Band<'a> {
+    rect: Rect,
+    colors: &'a mut [Color],
+    depths: &'a mut [f32],
+}
+
+impl Band<'_> {
+    /// Draws its tiles, from left to right.
+    fn draw<S: Shader<N>, const N: usize>(mut self, frame: &Frame<'_, S, N>, row: usize) {
+        if frame.state.load == LoadOp::Clear {
+            // Here and not before: what was just written is still near when the tiles come.
+            fill(self.colors, frame.state.clear_color);
+            fill(self.depths, frame.state.clear_depth as f32);
+        }
+        let mut tile = Tile::new();
+        for (column, left) in self.rect.columns().step_by(TILE_WIDTH as usize).enumerate() {
+            let rect = Rect { left, right: (left + TILE_WIDTH).min(self.rect.right), ..self.rect };
+            if !frame.front.is_empty([column, row]) {
+                tile.load(rect, &self);
+                tile.draw(frame, || frame.front.triangles_in(frame.source, [column, row]));
+                if tile.has_holes(frame) {
+                    // What seemed to cover the tile does not: once more, with all triangles.
+                    tile.load(rect, &self);
+                    tile.draw(frame, || frame.front.triangles_in(frame.source, [column, row]));
+                }
+                tile.store(&mut self);
+            }
+        }
+    }
+
+    /// Where the rows of a rectangle stand in the band.
+    fn places(&self, rect: Rect) -> impl Iterator<Item = Range<usize>> + use<> {
+        let window = self.rect;
+        rect.rows().map(move |y| {
+            let start = (y - window.bottom) as usize * window.columns().len();
+            start + rect.left as usize..start + rect.right as usize
+        })
+    }
+}
+
+/// Fills a plane with one value.
+///
+/// Block by block: for copies of some thousand bytes processors have instructions that need not fetch what they write
+/// over.
+fn fill<T: Copy>(plane: &mut [T], value: T) {
+    const BLOCK: usize = 4096;
+    let (first, rest) = plane.split_at_mut(BLOCK.min(plane.len()));
+    first.fill(value);
+    rest.chunks_mut(BLOCK).for_each(|block| block.copy_from_slice(&first[..block.len()]));
 }
 // ANCHOR_END: tiles
 
@@ -144,7 +195,9 @@ impl Rasterizer for Tiled {
         _: &P,
     ) {
         let pieces: Vec<[NdcVertex<N>; 3]> = triangles.collect();
-        self.draw_source(&Source::Pieces(&pieces), shader, state, target);
+        // Clearing belongs to whoever draws a whole mesh.
+        let state = RenderState { load: LoadOp::Load, ..*state };
+        self.draw_source(&Source::Pieces(&pieces), shader, &state, target);
     }
 
     fn draw_mesh<S: Shader<N>, const N: usize>(

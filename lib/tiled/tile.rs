@@ -1,13 +1,16 @@
 //! One tile: coverage, depth test, shading and writing of the triangles in its bin.
 
 use std::array::from_fn;
+use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use wide::{f32x8, i32x8};
 
-use super::edges::{Edges, Huge, Narrow, Setup, Split, is_narrow, narrow_lanes};
+use super::edges::{Edges, Huge, Narrow, Setup, SmallSetup, Split, is_narrow};
 use super::front::{Front, Source, Triangle, bounding_box};
+use super::occlusion::{depth_range, hidden_behind};
+use super::{Band, TILE_HEIGHT, TILE_WIDTH};
 use crate::depth::DepthTest;
-use crate::edge::{SUBPIXELS, center};
 use crate::interpolate::{Interpolation, Projected};
 use crate::lanes::{LANES, LaneMask, Lanes, channels, is_greater, is_less_or_equal, packed};
 use crate::merge::{Blend, Merge};
@@ -23,16 +26,27 @@ pub(super) struct Frame<'a, S: Shader<N>, const N: usize> {
     pub(super) state: &'a RenderState,
     pub(super) front: &'a Front,
     pub(super) source: &'a Source<'a, S, N>,
+    /// Whether the shader has been seen to throw fragments away.
+    pub(super) discards: AtomicBool,
 }
 
-/// A rectangle of the picture, with the rows of the target in which it lies.
-pub(super) struct Tile<'a> {
+/// A rectangle of the picture, brought near: a copy of its colors and depths in the processor's nearest memory.
+pub(super) struct Tile {
+    /// What of the tile lies in the picture.
     rect: Rect,
-    /// The rows are so long.
-    width: usize,
-    colors: &'a mut [Color],
-    depths: &'a mut [f32],
+    /// Nothing that is deeper than this can be seen.
+    behind: f64,
+    rows: [Row; TILE_HEIGHT as usize],
     queue: Queue,
+}
+
+/// A row of a tile. Colors and depths of a pixel are near each other, but never at the same place of two memory pages,
+/// where a processor takes one for the other.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+struct Row {
+    colors: [Color; TILE_WIDTH as usize],
+    depths: [f32; TILE_WIDTH as usize],
 }
 
 /// Fragments of small triangles that wait until there are eight of them.
@@ -40,41 +54,80 @@ struct Queue {
     count: usize,
     /// 1/ω, depth, V/ω of each fragment.
     records: [f32x8; LANES],
-    /// Where each fragment stands in the tile's rows.
-    places: [usize; LANES],
+    /// The row and the column of each fragment in the tile.
+    places: [[usize; 2]; LANES],
 }
 
 /// Up to this many pixels wide and high, a triangle is small.
 const SMALL: i32 = 8;
 
-impl<'a> Tile<'a> {
-    /// A tile; `colors` and `depths` begin with its lowest row, at the left border of the picture.
-    pub(super) fn new(rect: Rect, width: usize, colors: &'a mut [Color], depths: &'a mut [f32]) -> Self {
-        let queue = Queue { count: 0, records: [f32x8::ZERO; LANES], places: [0; LANES] };
-        Self { rect, width, colors, depths, queue }
+impl Tile {
+    /// Room for a tile.
+    pub(super) fn new() -> Self {
+        let row = Row { colors: [Color::BLACK; TILE_WIDTH as usize], depths: [0.0; TILE_WIDTH as usize] };
+        let queue = Queue { count: 0, records: [f32x8::ZERO; LANES], places: [[0; 2]; LANES] };
+        Self { rect: Rect::sized(0, 0), behind: f64::INFINITY, rows: [row; TILE_HEIGHT as usize], queue }
+    }
+
+    /// Fetches the pixels of a rectangle of a band.
+    pub(super) fn load(&mut self, rect: Rect, band: &Band<'_>) {
+        self.rect = rect;
+        for (row, place) in self.rows.iter_mut().zip(band.places(rect)) {
+            row.colors[..place.len()].copy_from_slice(&band.colors[place.clone()]);
+            row.depths[..place.len()].copy_from_slice(&band.depths[place]);
+        }
+    }
+
+    /// Brings the pixels back.
+    pub(super) fn store(&self, band: &mut Band<'_>) {
+        for (row, place) in self.rows.iter().zip(band.places(self.rect)) {
+            band.colors[place.clone()].copy_from_slice(&row.colors[..place.len()]);
+            band.depths[place.clone()].copy_from_slice(&row.depths[..place.len()]);
+        }
+    }
+
+    /// Draws triangles, one after the other, but for those that are known to be hidden.
+    pub(super) fn draw<'a, S: Shader<N>, I: Iterator<Item = Triangle<'a>>, const N: usize>(
+        &mut self,
+        frame: &Frame<'_, S, N>,
+        triangles: impl Fn() -> I,
+    ) {
+        let may_hide = frame.front.has_large_triangles() && !frame.discards.load(Ordering::Relaxed);
+        self.behind = if may_hide { hidden_behind(frame, triangles(), self.rect) } else { f64::INFINITY };
+        for triangle in triangles() {
+            self.draw_triangle(frame, triangle);
+        }
+        self.flush(frame);
+    }
+
+    /// Whether triangles were left out behind one whose fragments the shader may have thrown away.
+    pub(super) fn has_holes<S: Shader<N>, const N: usize>(&self, frame: &Frame<'_, S, N>) -> bool {
+        self.behind < f64::INFINITY && frame.discards.load(Ordering::Relaxed)
     }
 
     /// Draws a triangle as far as it lies in the tile.
-    pub(super) fn draw<S: Shader<N>, const N: usize>(
+    fn draw_triangle<S: Shader<N>, const N: usize>(
         &mut self,
         frame: &Frame<'_, S, N>,
         triangle: Triangle<'_>,
     ) {
         let Some(area) = bounding_box(triangle.places, self.rect) else { return };
-        let setup = Setup::new(triangle.places, area);
         let is_small = area.columns().len() <= SMALL as usize && area.rows().len() <= SMALL as usize;
         // A record of more than one block does not fit into the queue, and neighbors are needed for derivatives.
         if is_small && N + 2 <= LANES && !S::USES_DERIVATIVES && is_narrow(triangle.places) {
-            self.draw_small(frame, &setup, triangle);
-        } else {
+            self.draw_small(frame, triangle, area);
+            return;
+        }
+        let setup = Setup::new(triangle.places, area);
+        if self.behind == f64::INFINITY || depth_range(&setup, triangle, area)[0] <= self.behind {
             self.flush(frame);
             self.draw_rows(frame, &setup, triangle);
         }
     }
 
-    /// Where a pixel stands in the rows.
-    fn place(&self, x: i32, y: i32) -> usize {
-        (y - self.rect.bottom) as usize * self.width + x as usize
+    /// The row and the column of a pixel in the tile.
+    fn place(&self, x: i32, y: i32) -> [usize; 2] {
+        [(y - self.rect.bottom) as usize, (x - self.rect.left) as usize]
     }
 
     // ANCHOR: small
@@ -82,32 +135,21 @@ impl<'a> Tile<'a> {
     fn draw_small<S: Shader<N>, const N: usize>(
         &mut self,
         frame: &Frame<'_, S, N>,
-        setup: &Setup,
         triangle: Triangle<'_>,
+        area: Rect,
     ) {
         let [first, second, third] = triangle.records.map(|record| record[0]);
         let (to_second, to_third) = (second - first, third - first);
-        let Rect { left, right, .. } = setup.area;
-        let columns = (1 << (right - left)) - 1;
-        let start = center(left, setup.area.bottom);
-        let mut values: [i32x8; 3] = from_fn(|i| narrow_lanes(&setup.edges[i], start));
-        let shy = setup.shy.map(|shy| i32x8::splat(shy as i32));
-        let steps = from_fn::<_, 3, _>(|i| i32x8::splat((setup.edges[i].step_y * SUBPIXELS) as i32));
-
-        for y in setup.area.rows() {
-            // A sign bit in any of the three says that the pixel is outside.
-            let outside = (values[0] - shy[0]) | (values[1] - shy[1]) | (values[2] - shy[2]);
-            let mut covered = !outside.move_mask() & columns;
-            let [_, weights_2, weights_3] = values.map(i32x8::to_array);
-            while covered != 0 {
-                let lane = covered.trailing_zeros() as usize;
-                covered &= covered - 1;
-                let second = f32x8::splat(weights_2[lane] as f32 * setup.one_over_area);
-                let third = f32x8::splat(weights_3[lane] as f32 * setup.one_over_area);
-                let record = first + to_second * second + to_third * third;
-                self.enqueue(frame, record, self.place(left + lane as i32, y));
-            }
-            values = from_fn(|i| values[i] + steps[i]);
+        let setup = SmallSetup::new(triangle.places, [area.left, area.bottom]);
+        let [bottom, left] = self.place(area.left, area.bottom);
+        let mut covered = setup.covered(area);
+        while covered != 0 {
+            let bit = covered.trailing_zeros();
+            covered &= covered - 1;
+            let (row, column) = (bit / 8, bit % 8);
+            let [second, third] = setup.weights(column as i32, row as i32);
+            let record = first + to_second * f32x8::splat(second) + to_third * f32x8::splat(third);
+            self.enqueue(frame, record, [bottom + row as usize, left + column as usize]);
         }
     }
 
@@ -116,11 +158,13 @@ impl<'a> Tile<'a> {
         &mut self,
         frame: &Frame<'_, S, N>,
         record: f32x8,
-        place: usize,
+        place: [usize; 2],
     ) {
         // Stored depths only become harder to pass: what fails now fails later.
         let is_linear = frame.state.depth_encoding.is_linear_on_screen();
-        if is_linear && !frame.state.merge.depth_test.passes(record.as_array_ref()[1], self.depths[place]) {
+        let [row, column] = place;
+        let stored = self.rows[row].depths[column];
+        if is_linear && !frame.state.merge.depth_test.passes(record.as_array_ref()[1], stored) {
             return;
         }
         self.queue.records[self.queue.count] = record;
@@ -131,36 +175,47 @@ impl<'a> Tile<'a> {
         }
     }
 
-    /// Shades all fragments that wait, and writes them one after the other.
-    pub(super) fn flush<S: Shader<N>, const N: usize>(&mut self, frame: &Frame<'_, S, N>) {
-        let count = std::mem::take(&mut self.queue.count);
-        if count == 0 {
-            return;
+    /// Shades all fragments that wait.
+    fn flush<S: Shader<N>, const N: usize>(&mut self, frame: &Frame<'_, S, N>) {
+        if self.queue.count > 0 && is_plain(frame.state) {
+            self.flush_queue::<true, S, N>(frame);
+        } else if self.queue.count > 0 {
+            self.flush_queue::<false, S, N>(frame);
         }
+    }
+
+    /// Shades them all at once, and writes them one after the other.
+    #[inline(never)]
+    fn flush_queue<const PLAIN: bool, S: Shader<N>, const N: usize>(&mut self, frame: &Frame<'_, S, N>) {
+        let count = std::mem::take(&mut self.queue.count);
+        let Merge { depth_test, depth_write, blend } =
+            if PLAIN { Merge::default() } else { frame.state.merge };
         let numbers = f32x8::transpose(self.queue.records);
         let corner = CornerVaryings {
             distance: numbers[0],
             depth: numbers[1],
             values: from_fn(|k| numbers.get(k + 2).copied().unwrap_or(f32x8::ZERO)),
         };
-        let point: Projected<Lanes, N> = corner.multiplied(frame.state.interpolation);
-        let is_linear = frame.state.depth_encoding.is_linear_on_screen();
+        let interpolation = if PLAIN { Interpolation::PerspectiveCorrect } else { frame.state.interpolation };
+        let point: Projected<Lanes, N> = corner.multiplied(interpolation);
+        let is_linear = PLAIN || frame.state.depth_encoding.is_linear_on_screen();
         let depths = if is_linear { corner.depth } else { point.w }.to_array();
         let shaded: Shaded<Lanes> = frame.shader.fragment(point.values);
         let kept = shaded.keep.bits();
-        let blend = frame.state.merge.blend;
         let opaque = packed([shaded.color[0], shaded.color[1], shaded.color[2]]).to_array();
         for lane in (0..count).filter(|lane| kept >> lane & 1 == 1) {
-            let place = self.queue.places[lane];
-            if !frame.state.merge.depth_test.passes(depths[lane], self.depths[place]) {
+            let [row, column] = self.queue.places[lane];
+            let row = &mut self.rows[row];
+            let (color, depth) = (&mut row.colors[column], &mut row.depths[column]);
+            if !depth_test.passes(depths[lane], *depth) {
                 continue;
             }
-            if frame.state.merge.depth_write {
-                self.depths[place] = depths[lane];
+            if depth_write {
+                *depth = depths[lane];
             }
-            self.colors[place] = match blend {
+            *color = match blend {
                 Blend::Opaque => Color::from_bits(opaque[lane] as u32),
-                _ => blended(blend, shaded.color.map(|channel| channel.to_array()[lane]), self.colors[place]),
+                _ => blended(blend, shaded.color.map(|channel| channel.to_array()[lane]), *color),
             };
         }
     }
@@ -174,19 +229,17 @@ impl<'a> Tile<'a> {
         setup: &Setup,
         triangle: Triangle<'_>,
     ) {
-        // Groups of eight begin at the same columns for all triangles.
-        let first = setup.area.left - (setup.area.left - self.rect.left) % LANES as i32;
-        let area = Rect { left: first, ..setup.area };
+        let area = whole_groups(setup.area, self.rect.left);
         if is_narrow(triangle.places) {
-            self.draw_groups(frame, setup, triangle, Narrow::new(setup, first));
+            self.draw_groups(frame, setup, triangle, area, Narrow::new(setup, area));
         } else if setup.misses(area) {
             // An edge has all of the tile on its wrong side.
         } else if !setup.is_split_exact(area) {
-            self.draw_groups(frame, setup, triangle, Huge { setup, left: first });
+            self.draw_groups(frame, setup, triangle, area, Huge { setup, area });
         } else if setup.covers(area) {
-            self.draw_groups(frame, setup, triangle, Split::<true>::new(setup, first));
+            self.draw_groups(frame, setup, triangle, area, Split::<true>::new(setup, area));
         } else {
-            self.draw_groups(frame, setup, triangle, Split::<false>::new(setup, first));
+            self.draw_groups(frame, setup, triangle, area, Split::<false>::new(setup, area));
         }
     }
 
@@ -195,6 +248,7 @@ impl<'a> Tile<'a> {
         frame: &Frame<'_, S, N>,
         setup: &Setup,
         triangle: Triangle<'_>,
+        area: Rect,
         edges: E,
     ) {
         let corners = triangle.records.map(corner_of::<N>);
@@ -202,18 +256,32 @@ impl<'a> Tile<'a> {
         let gradients =
             if S::USES_DERIVATIVES { setup.gradients(triangle.places) } else { [[Lanes::ZERO; 2]; 2] };
         let brush = Brush { varyings, gradients, one_over_area: Lanes::splat(setup.one_over_area) };
-        let place = Placing { area: setup.area, tile: self.rect, width: self.width };
-        let (state, colors, depths) = (frame.state, &mut *self.colors, &mut *self.depths);
-        if is_plain(state) {
-            draw_area::<true, S, E, N>(frame.shader, state, &brush, &edges, &place, colors, depths);
+        let [bottom, left] = self.place(area.left, area.bottom);
+        let [top, right] = self.place(area.right, area.top);
+        let rows = &mut self.rows[bottom..top];
+        let groups = left / LANES..right / LANES;
+        let all_are_kept = if is_plain(frame.state) {
+            draw_area::<true, S, E, N>(frame.shader, frame.state, &brush, &edges, rows, groups)
         } else {
-            draw_area::<false, S, E, N>(frame.shader, state, &brush, &edges, &place, colors, depths);
+            draw_area::<false, S, E, N>(frame.shader, frame.state, &brush, &edges, rows, groups)
+        };
+        if !all_are_kept {
+            frame.discards.store(true, Ordering::Relaxed);
         }
     }
 }
 
+/// The area, as many columns wider as it takes to begin and to end with a group of eight.
+///
+/// No triangle covers pixels outside its area: what is tested there is not covered, or else outside the picture.
+fn whole_groups(area: Rect, tile_left: i32) -> Rect {
+    const SIDE: i32 = LANES as i32;
+    let (from, to) = (area.left - tile_left, area.right - tile_left);
+    Rect { left: tile_left + from / SIDE * SIDE, right: tile_left + (to + SIDE - 1) / SIDE * SIDE, ..area }
+}
+
 /// Whether all options that matter for a pixel have their default values: the most common case, known at compile time.
-fn is_plain(state: &RenderState) -> bool {
+pub(super) fn is_plain(state: &RenderState) -> bool {
     state.merge == Merge::default()
         && state.depth_encoding.is_linear_on_screen()
         && state.interpolation == Interpolation::PerspectiveCorrect
@@ -226,14 +294,7 @@ struct Brush<const N: usize> {
     one_over_area: Lanes,
 }
 
-/// Which pixels of a tile a triangle may cover, and where they are in memory.
-struct Placing {
-    area: Rect,
-    tile: Rect,
-    width: usize,
-}
-
-/// Draws the rows of a triangle in a tile, eight pixels at a time.
+/// Draws the rows of a triangle in a tile, eight pixels at a time. Whether the shader keeps all fragments.
 ///
 /// A function by itself, so that the compiler knows that nothing that is written here changes what is read.
 #[inline(never)]
@@ -242,61 +303,39 @@ fn draw_area<const PLAIN: bool, S: Shader<N>, E: Edges, const N: usize>(
     state: &RenderState,
     brush: &Brush<N>,
     edges: &E,
-    place: &Placing,
-    colors: &mut [Color],
-    depths: &mut [f32],
-) {
-    let Placing { area, tile, width } = *place;
-    let first = area.left - (area.left - tile.left) % LANES as i32;
-    for y in area.rows() {
-        let start = (y - tile.bottom) as usize * width;
-        let row = start + first as usize..start + tile.right as usize;
-        let (color_groups, color_rest) = colors[row.clone()].as_chunks_mut::<LANES>();
-        let (depth_groups, depth_rest) = depths[row].as_chunks_mut::<LANES>();
-        let mut group = edges.row(y);
-        let mut x = first;
-        for (colors, depths) in color_groups.iter_mut().zip(depth_groups) {
-            if x >= area.right {
-                break;
-            }
-            let limits = [area.left - x, area.right - x];
-            draw_group::<PLAIN, S, E, N>(shader, state, brush, &group, edges, limits, colors, depths);
-            edges.step(&mut group);
-            x += LANES as i32;
+    rows: &mut [Row],
+    groups: Range<usize>,
+) -> bool {
+    let mut kept = LaneMask::all(true);
+    let mut first = edges.first();
+    for row in rows {
+        let mut group = first;
+        let colors = row.colors.as_chunks_mut::<LANES>().0[groups.clone()].iter_mut();
+        let depths = row.depths.as_chunks_mut::<LANES>().0[groups.clone()].iter_mut();
+        for (colors, depths) in colors.zip(depths) {
+            kept =
+                kept.and(draw_group::<PLAIN, S, E, N>(shader, state, brush, &group, edges, colors, depths));
+            edges.step_right(&mut group);
         }
-        if x < area.right {
-            // The picture ends within a group.
-            let (mut eight_colors, mut eight_depths) = ([Color::BLACK; LANES], [0.0; LANES]);
-            eight_colors[..color_rest.len()].copy_from_slice(color_rest);
-            eight_depths[..depth_rest.len()].copy_from_slice(depth_rest);
-            let limits = [area.left - x, area.right - x];
-            let (colors, depths) = (&mut eight_colors, &mut eight_depths);
-            draw_group::<PLAIN, S, E, N>(shader, state, brush, &group, edges, limits, colors, depths);
-            color_rest.copy_from_slice(&eight_colors[..color_rest.len()]);
-            depth_rest.copy_from_slice(&eight_depths[..depth_rest.len()]);
-        }
+        edges.step_up(&mut first);
     }
+    kept.bits() == LaneMask::all(true).bits()
 }
 
-/// Tests, shades and writes eight neighbors, as far as they are covered and their lanes lie between the limits.
+/// Tests, shades and writes eight neighbors, as far as they are covered. Which of them the shader keeps.
 #[inline(always)]
-#[allow(clippy::too_many_arguments, reason = "a part of the innermost loop")]
 fn draw_group<const PLAIN: bool, S: Shader<N>, E: Edges, const N: usize>(
     shader: &S,
     state: &RenderState,
     brush: &Brush<N>,
     group: &E::Group,
     edges: &E,
-    [start, end]: [i32; 2],
     colors: &mut [Color; LANES],
     depths: &mut [f32; LANES],
-) {
+) -> LaneMask {
     let mut mask = edges.covered(group);
-    if start > 0 || end < LANES as i32 {
-        mask = mask.and(LaneMask::range(start, end));
-    }
     if mask.bits() == 0 {
-        return;
+        return LaneMask::all(true);
     }
     let Brush { varyings, gradients, one_over_area } = brush;
     let weights = E::values(group).map(|value| value * *one_over_area);
@@ -309,7 +348,7 @@ fn draw_group<const PLAIN: bool, S: Shader<N>, E: Edges, const N: usize>(
     let test = if PLAIN { DepthTest::LessOrEqual } else { state.merge.depth_test };
     mask = mask.and(passes(test, depth, stored));
     if mask.bits() == 0 {
-        return;
+        return LaneMask::all(true);
     }
 
     let point = varyings.interpolated(weights, interpolation);
@@ -320,8 +359,10 @@ fn draw_group<const PLAIN: bool, S: Shader<N>, E: Edges, const N: usize>(
     };
     mask = mask.and(shaded.keep);
 
+    // Mostly all eight are written. If not, what is there stays in the other lanes.
+    let is_whole = mask.bits() == LaneMask::all(true).bits();
     if PLAIN || state.merge.depth_write {
-        *depths = Lanes::select(mask, depth, stored).to_array();
+        *depths = if is_whole { depth } else { Lanes::select(mask, depth, stored) }.to_array();
     }
     let there = i32x8::new(colors.map(|color| color.bits() as i32));
     let blend = if PLAIN { Blend::Opaque } else { state.merge.blend };
@@ -329,7 +370,9 @@ fn draw_group<const PLAIN: bool, S: Shader<N>, E: Edges, const N: usize>(
         Blend::Opaque => packed([shaded.color[0], shaded.color[1], shaded.color[2]]),
         blend => packed(blend.apply(shaded.color, channels(there))),
     };
-    *colors = mask.choose(words, there).to_array().map(|word| Color::from_bits(word as u32));
+    let words = if is_whole { words } else { mask.choose(words, there) };
+    *colors = words.to_array().map(|word| Color::from_bits(word as u32));
+    shaded.keep
 }
 // ANCHOR_END: rows
 

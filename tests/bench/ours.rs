@@ -9,7 +9,7 @@ use rasterbook::depth::Target;
 use rasterbook::edge::Exact;
 use rasterbook::light::lambert;
 use rasterbook::mesh::Mesh;
-use rasterbook::pipeline::{RenderState, draw};
+use rasterbook::pipeline::{LoadOp, RenderState, draw};
 use rasterbook::probe::Silent;
 use rasterbook::raster::{Rasterizer, Scanline};
 use rasterbook::real::{Mask, Real, Scalar};
@@ -76,7 +76,7 @@ pub(crate) const RASTERIZERS: [Ours; 4] = [
 
 /// How all scenes are drawn.
 fn state() -> RenderState {
-    RenderState { cull: CullMode::Back, ..RenderState::default() }
+    RenderState { cull: CullMode::Back, load: LoadOp::Clear, ..RenderState::default() }
 }
 
 /// The shaders' uniforms.
@@ -118,6 +118,7 @@ impl Shader<2> for Unlit {
         ClipVertex { position: self.0.project(vertex), varyings: vertex.uv.map(f64::from) }
     }
 
+    #[inline(always)]
     fn fragment<R: Real>(&self, uv: [R; 2]) -> Shaded<R> {
         Shaded::opaque(self.0.texture.nearest(uv, AddressMode::Repeat))
     }
@@ -141,6 +142,7 @@ impl Shader<5> for Lit {
         ClipVertex { position: self.0.project(vertex), varyings: [u, v, x, y, z].map(f64::from) }
     }
 
+    #[inline(always)]
     fn fragment<R: Real>(&self, [u, v, x, y, z]: [R; 5]) -> Shaded<R> {
         let diffuse = lambert([x, y, z], TO_LIGHT.map(|c| R::of(f64::from(c))));
         let brightness = (diffuse + R::of(f64::from(AMBIENT))).min(R::of(1.0));
@@ -192,7 +194,6 @@ where
     S: Shader<N, Attributes = Vertex> + Sync,
 {
     fn draw(&mut self) {
-        clear(&mut self.target, &self.state);
         draw(&self.mesh, &self.shader, &self.state, &self.rasterizer, &mut self.target, &Silent);
     }
 
