@@ -58,13 +58,6 @@ impl LaneMask {
         Self(cast((i32x8::splat(bits) & place).cmp_eq(place)))
     }
 
-    /// The lanes in which a number is negative.
-    #[inline]
-    pub(crate) fn of_signs(numbers: i32x8) -> Self {
-        let all_bits: i32x8 = numbers >> 31;
-        Self(cast(all_bits))
-    }
-
     /// `yes` in the lanes of the mask, `no` in the others.
     #[inline]
     pub(crate) fn choose(self, yes: i32x8, no: i32x8) -> i32x8 {
@@ -213,10 +206,9 @@ mod tests {
     #[test]
     fn masks() {
         assert_eq!(LaneMask::of_bits(0b1_1100).bits(), 0b1_1100);
-        let signs = i32x8::new([-1, 2, 0, 3, i32::MAX, i32::MIN, 7, -9]);
-        assert_eq!(LaneMask::of_signs(signs).bits(), 0b1010_0001);
+        let numbers = i32x8::new([-1, 2, 0, 3, i32::MAX, i32::MIN, 7, -9]);
         assert_eq!(
-            LaneMask::of_bits(0b110).choose(signs, i32x8::splat(5)).to_array(),
+            LaneMask::of_bits(0b110).choose(numbers, i32x8::splat(5)).to_array(),
             [5, 2, 0, 5, 5, 5, 5, 5]
         );
         assert_eq!(LaneMask::all(true).not().bits(), 0);

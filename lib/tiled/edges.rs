@@ -6,6 +6,7 @@ use std::ops::Add;
 use wide::i32x8;
 
 use super::front::{Place, signed_area};
+use super::{TILE_HEIGHT, TILE_WIDTH};
 use crate::Rect;
 use crate::edge::{EdgeFunction, SUBPIXELS, center};
 use crate::lanes::{LANES, LaneMask, Lanes, is_less_or_equal};
@@ -18,11 +19,10 @@ pub(super) struct Setup {
     /// What is taken off a value so that "not negative" means covered: 1 on edges that are neither top nor left.
     pub(super) shy: [i64; 3],
     pub(super) one_over_area: f32,
-    pub(super) area: Rect,
 }
 
 impl Setup {
-    pub(super) fn new([a, b, c]: [Place; 3], area: Rect) -> Self {
+    pub(super) fn new([a, b, c]: [Place; 3]) -> Self {
         let signed_area = signed_area([a, b, c]);
         let edge = |from: Place, to: Place| {
             let (from, to) = if signed_area > 0 { (from, to) } else { (to, from) };
@@ -30,7 +30,7 @@ impl Setup {
         };
         let edges = [edge(b, c), edge(c, a), edge(a, b)];
         let shy = edges.map(|edge| i64::from(!edge.is_top_left()));
-        Self { edges, shy, one_over_area: 1.0 / (signed_area.abs() as f32), area }
+        Self { edges, shy, one_over_area: 1.0 / (signed_area.abs() as f32) }
     }
 
     /// The least and the greatest value of an edge function at the centers of a rectangle, less what keeps a tie out.
@@ -60,12 +60,12 @@ impl Setup {
         let near = Rect { right: area.right + LANES as i32, ..area };
         (0..3).all(|i| self.range(i, near).into_iter().all(|value| value.abs() < 1 << 39))
     }
+}
 
-    /// How the weights of the second and third vertex change per pixel.
-    pub(super) fn gradients(&self, places: [Place; 3]) -> WeightGradients<Lanes> {
-        let corners = places.map(|[x, y]| glam::dvec2(f64::from(x), f64::from(y)) / SUBPIXELS as f64);
-        crate::varyings::weight_gradients(corners)
-    }
+/// How the weights of the second and third vertex change per pixel.
+pub(super) fn gradients(places: [Place; 3]) -> WeightGradients<Lanes> {
+    let corners = places.map(|[x, y]| glam::dvec2(f64::from(x), f64::from(y)) / SUBPIXELS as f64);
+    crate::varyings::weight_gradients(corners)
 }
 
 /// Whether all values of a triangle's edge functions near it fit into 32 bits.
@@ -78,15 +78,9 @@ pub(super) fn is_narrow([a, b, c]: [Place; 3]) -> bool {
     size(0) * size(1) < 1 << 29
 }
 
-/// An edge function at eight neighboring centers from a point on, if its values fit into 32 bits.
-fn narrow_lanes(edge: &EdgeFunction, start: [i64; 2]) -> i32x8 {
-    let step = (edge.step_x * SUBPIXELS) as i32;
-    i32x8::splat(edge.at(start) as i32) + i32x8::splat(step) * i32x8::new([0, 1, 2, 3, 4, 5, 6, 7])
-}
-
-// ANCHOR: small_setup
-/// The three edges of a triangle of a few pixels, in 32-bit integers.
-pub(super) struct SmallSetup {
+// ANCHOR: narrow
+/// The three edges of a triangle of up to some 70 × 70 pixels, in 32-bit integers.
+pub(super) struct Narrow {
     /// The values at the first center.
     start: [i32; 3],
     /// How they change from pixel to pixel, to the right and upwards.
@@ -94,10 +88,10 @@ pub(super) struct SmallSetup {
     up: [i32; 3],
     /// As in [`Setup`].
     shy: [i32; 3],
-    one_over_area: f32,
+    pub(super) one_over_area: f32,
 }
 
-impl SmallSetup {
+impl Narrow {
     /// The edges, seen from the center of a pixel.
     pub(super) fn new(places: [Place; 3], [x, y]: [i32; 2]) -> Self {
         const PIXEL: i32 = SUBPIXELS as i32;
@@ -121,34 +115,94 @@ impl SmallSetup {
         }
     }
 
+    /// How the functions change from the first to each of eight neighbors.
+    #[inline]
+    fn lanes(&self) -> [i32x8; 3] {
+        let number = i32x8::new([0, 1, 2, 3, 4, 5, 6, 7]);
+        self.right.map(|step| i32x8::splat(step) * number)
+    }
+
+    /// Calls `row` with the functions at the first eight centers of each row, less what keeps ties out.
+    #[inline]
+    fn rows(&self, count: usize, mut row: impl FnMut(usize, [i32x8; 3])) {
+        let lanes = self.lanes();
+        let mut values = from_fn(|i| i32x8::splat(self.start[i] - self.shy[i]) + lanes[i]);
+        let up = self.up.map(i32x8::splat);
+        for number in 0..count {
+            row(number, values);
+            values = from_fn(|i| values[i] + up[i]);
+        }
+    }
+
     /// Which pixels of an area of at most 8 × 8 are covered: a bit each, eight for a row.
     #[inline]
     pub(super) fn covered(&self, area: Rect) -> u64 {
-        let number = i32x8::new([0, 1, 2, 3, 4, 5, 6, 7]);
-        let mut values: [i32x8; 3] =
-            from_fn(|i| i32x8::splat(self.start[i] - self.shy[i]) + i32x8::splat(self.right[i]) * number);
-        let up = self.up.map(i32x8::splat);
         let columns = (1_u64 << area.columns().len()) - 1;
         let mut covered = 0;
-        for row in 0..area.rows().len() {
-            // A sign bit in any of the three says that the pixel is outside.
-            let outside = (values[0] | values[1] | values[2]).move_mask();
-            covered |= (!(outside as u64) & columns) << (8 * row);
-            values = from_fn(|i| values[i] + up[i]);
-        }
+        self.rows(area.rows().len(), |row, values| {
+            covered |= (u64::from(covered_bits(values)) & columns) << (8 * row);
+        });
         covered
     }
 
-    /// The weights of the second and the third vertex so many pixels to the right and above the first center.
+    /// Which groups of eight are touched in an area of so many rows and groups: written to a list, from below.
+    pub(super) fn touched<'a>(&self, rows: usize, groups: usize, list: &'a mut Touches) -> &'a [Touch] {
+        let right = self.right.map(|step| i32x8::splat(step * LANES as i32));
+        let mut count = 0;
+        self.rows(rows, |row, mut values| {
+            for group in 0..groups {
+                let covered = covered_bits(values);
+                // Always written, but counted only if there is something: no branch to be foreseen.
+                list[count % list.len()] = Touch { row: row as u8, group: group as u8, covered };
+                count += usize::from(covered != 0);
+                values = from_fn(|i| values[i] + right[i]);
+            }
+        });
+        &list[..count]
+    }
+
+    /// The values that belong to the second and the third vertex, so many pixels to the right and above the first center.
+    #[inline(always)]
+    fn values(&self, column: i32, row: i32) -> [i32; 2] {
+        [1, 2].map(|i| self.start[i] + self.right[i] * column + self.up[i] * row)
+    }
+
+    /// The weights of the second and the third vertex there.
     #[inline]
     pub(super) fn weights(&self, column: i32, row: i32) -> [f32; 2] {
-        [1, 2]
-            .map(|i| (self.start[i] + self.right[i] * column + self.up[i] * row) as f32 * self.one_over_area)
+        self.values(column, row).map(|value| value as f32 * self.one_over_area)
+    }
+
+    /// The values in a touched group, each rounded once.
+    #[inline(always)]
+    pub(super) fn group(&self, touch: Touch) -> [Lanes; 2] {
+        let [_, second, third] = self.lanes();
+        let [to_second, to_third] = self.values(i32::from(touch.group) * LANES as i32, i32::from(touch.row));
+        [(i32x8::splat(to_second) + second).round_float(), (i32x8::splat(to_third) + third).round_float()]
     }
 }
-// ANCHOR_END: small_setup
 
-/// The edge functions in an area, eight centers at a time: from the lowest row up, and in a row from left to right.
+/// A bit for each of eight pixels: none of the three values says, by its sign, that it is outside.
+#[inline(always)]
+fn covered_bits(values: [i32x8; 3]) -> u8 {
+    !(values[0] | values[1] | values[2]).move_mask() as u8
+}
+// ANCHOR_END: narrow
+
+/// A group of eight pixels of which a triangle covers some.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Touch {
+    pub(super) row: u8,
+    pub(super) group: u8,
+    /// A bit for each.
+    pub(super) covered: u8,
+}
+
+/// Room for all groups of a tile.
+pub(super) type Touches = [Touch; (TILE_HEIGHT * TILE_WIDTH) as usize / LANES];
+
+/// The edge functions of larger triangles in an area, eight centers at a time: from the lowest row up, and in a row from
+/// left to right.
 pub(super) trait Edges {
     /// The values at eight neighboring centers.
     type Group: Copy;
@@ -163,57 +217,6 @@ pub(super) trait Edges {
     fn covered(&self, group: &Self::Group) -> LaneMask;
     /// The values that belong to the second and the third vertex, each rounded once.
     fn values(group: &Self::Group) -> [Lanes; 2];
-}
-
-/// In 32-bit integers, for triangles that are not too large.
-pub(super) struct Narrow {
-    first: [i32x8; 3],
-    right: [i32x8; 3],
-    up: [i32x8; 3],
-    shy: [i32x8; 3],
-}
-
-impl Narrow {
-    /// The edges of a triangle in an area.
-    pub(super) fn new(setup: &Setup, area: Rect) -> Self {
-        let step = |step: i64| i32x8::splat((step * SUBPIXELS) as i32);
-        Self {
-            first: setup.edges.map(|edge| narrow_lanes(&edge, center(area.left, area.bottom))),
-            right: setup.edges.map(|edge| step(edge.step_x * LANES as i64)),
-            up: setup.edges.map(|edge| step(edge.step_y)),
-            shy: setup.shy.map(|shy| i32x8::splat(shy as i32)),
-        }
-    }
-}
-
-impl Edges for Narrow {
-    type Group = [i32x8; 3];
-
-    #[inline(always)]
-    fn first(&self) -> [i32x8; 3] {
-        self.first
-    }
-
-    #[inline(always)]
-    fn step_up(&self, group: &mut [i32x8; 3]) {
-        *group = from_fn(|i| group[i] + self.up[i]);
-    }
-
-    #[inline(always)]
-    fn step_right(&self, group: &mut [i32x8; 3]) {
-        *group = from_fn(|i| group[i] + self.right[i]);
-    }
-
-    #[inline(always)]
-    fn covered(&self, group: &[i32x8; 3]) -> LaneMask {
-        let outside = (group[0] - self.shy[0]) | (group[1] - self.shy[1]) | (group[2] - self.shy[2]);
-        LaneMask::of_signs(outside).not()
-    }
-
-    #[inline(always)]
-    fn values(group: &[i32x8; 3]) -> [Lanes; 2] {
-        [group[1].round_float(), group[2].round_float()]
-    }
 }
 
 // ANCHOR: split

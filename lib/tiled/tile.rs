@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use wide::{f32x8, i32x8};
 
-use super::edges::{Edges, Huge, Narrow, Setup, SmallSetup, Split, is_narrow};
+use super::edges::{Edges, Huge, Narrow, Setup, Split, Touch, Touches, gradients, is_narrow};
 use super::front::{Front, Source, Triangle, bounding_box};
 use super::occlusion::{depth_range, hidden_behind};
 use super::{Band, TILE_HEIGHT, TILE_WIDTH};
@@ -38,6 +38,7 @@ pub(super) struct Tile {
     behind: f64,
     rows: [Row; TILE_HEIGHT as usize],
     queue: Queue,
+    touches: Touches,
 }
 
 /// A row of a tile. Colors and depths of a pixel are near each other, but never at the same place of two memory pages,
@@ -61,12 +62,27 @@ struct Queue {
 /// Up to this many pixels wide and high, a triangle is small.
 const SMALL: i32 = 8;
 
+impl<S: Shader<N>, const N: usize> Frame<'_, S, N> {
+    /// Notes which fragments the shader has kept.
+    fn note(&self, kept: LaneMask) {
+        if kept.bits() != LaneMask::all(true).bits() {
+            self.discards.store(true, Ordering::Relaxed);
+        }
+    }
+}
+
 impl Tile {
     /// Room for a tile.
     pub(super) fn new() -> Self {
         let row = Row { colors: [Color::BLACK; TILE_WIDTH as usize], depths: [0.0; TILE_WIDTH as usize] };
         let queue = Queue { count: 0, records: [f32x8::ZERO; LANES], places: [[0; 2]; LANES] };
-        Self { rect: Rect::sized(0, 0), behind: f64::INFINITY, rows: [row; TILE_HEIGHT as usize], queue }
+        Self {
+            rect: Rect::sized(0, 0),
+            behind: f64::INFINITY,
+            rows: [row; TILE_HEIGHT as usize],
+            queue,
+            touches: [Touch::default(); size_of::<Touches>() / size_of::<Touch>()],
+        }
     }
 
     /// Fetches the pixels of a rectangle of a band.
@@ -113,15 +129,14 @@ impl Tile {
     ) {
         let Some(area) = bounding_box(triangle.places, self.rect) else { return };
         let is_small = area.columns().len() <= SMALL as usize && area.rows().len() <= SMALL as usize;
+        let is_narrow = is_narrow(triangle.places);
         // A record of more than one block does not fit into the queue, and neighbors are needed for derivatives.
-        if is_small && N + 2 <= LANES && !S::USES_DERIVATIVES && is_narrow(triangle.places) {
+        if is_narrow && is_small && N + 2 <= LANES && !S::USES_DERIVATIVES {
             self.draw_small(frame, triangle, area);
-            return;
-        }
-        let setup = Setup::new(triangle.places, area);
-        if self.behind == f64::INFINITY || depth_range(&setup, triangle, area)[0] <= self.behind {
-            self.flush(frame);
-            self.draw_rows(frame, &setup, triangle);
+        } else if is_narrow {
+            self.draw_narrow(frame, triangle, area);
+        } else {
+            self.draw_large(frame, triangle, area);
         }
     }
 
@@ -140,7 +155,7 @@ impl Tile {
     ) {
         let [first, second, third] = triangle.records.map(|record| record[0]);
         let (to_second, to_third) = (second - first, third - first);
-        let setup = SmallSetup::new(triangle.places, [area.left, area.bottom]);
+        let setup = Narrow::new(triangle.places, [area.left, area.bottom]);
         let [bottom, left] = self.place(area.left, area.bottom);
         let mut covered = setup.covered(area);
         while covered != 0 {
@@ -222,24 +237,48 @@ impl Tile {
     // ANCHOR_END: small
 
     // ANCHOR: rows
-    /// Many pixels: row by row, eight at a time.
-    fn draw_rows<S: Shader<N>, const N: usize>(
+    /// Some rows: first which groups of eight are touched, then group by group.
+    fn draw_narrow<S: Shader<N>, const N: usize>(
         &mut self,
         frame: &Frame<'_, S, N>,
-        setup: &Setup,
         triangle: Triangle<'_>,
+        area: Rect,
     ) {
-        let area = whole_groups(setup.area, self.rect.left);
-        if is_narrow(triangle.places) {
-            self.draw_groups(frame, setup, triangle, area, Narrow::new(setup, area));
-        } else if setup.misses(area) {
+        self.flush(frame);
+        let area = whole_groups(area, self.rect.left);
+        let setup = Narrow::new(triangle.places, [area.left, area.bottom]);
+        let (rows, groups) = self.rows_and_groups(area);
+        let touched = setup.touched(rows.len(), groups.len(), &mut self.touches);
+        let brush = Brush::new(frame, triangle, setup.one_over_area);
+        let rows = &mut self.rows[rows];
+        if is_plain(frame.state) {
+            draw_touched::<true, S, N>(frame, &brush, &setup, touched, rows, groups.start);
+        } else {
+            draw_touched::<false, S, N>(frame, &brush, &setup, touched, rows, groups.start);
+        }
+    }
+
+    /// Many pixels: row by row.
+    fn draw_large<S: Shader<N>, const N: usize>(
+        &mut self,
+        frame: &Frame<'_, S, N>,
+        triangle: Triangle<'_>,
+        area: Rect,
+    ) {
+        let setup = Setup::new(triangle.places);
+        if self.behind < f64::INFINITY && depth_range(&setup, triangle, area)[0] > self.behind {
+            return;
+        }
+        self.flush(frame);
+        let area = whole_groups(area, self.rect.left);
+        if setup.misses(area) {
             // An edge has all of the tile on its wrong side.
         } else if !setup.is_split_exact(area) {
-            self.draw_groups(frame, setup, triangle, area, Huge { setup, area });
+            self.draw_groups(frame, &setup, triangle, area, Huge { setup: &setup, area });
         } else if setup.covers(area) {
-            self.draw_groups(frame, setup, triangle, area, Split::<true>::new(setup, area));
+            self.draw_groups(frame, &setup, triangle, area, Split::<true>::new(&setup, area));
         } else {
-            self.draw_groups(frame, setup, triangle, area, Split::<false>::new(setup, area));
+            self.draw_groups(frame, &setup, triangle, area, Split::<false>::new(&setup, area));
         }
     }
 
@@ -251,23 +290,21 @@ impl Tile {
         area: Rect,
         edges: E,
     ) {
-        let corners = triangle.records.map(corner_of::<N>);
-        let varyings = TriangleVaryings::between(corners, frame.state.interpolation);
-        let gradients =
-            if S::USES_DERIVATIVES { setup.gradients(triangle.places) } else { [[Lanes::ZERO; 2]; 2] };
-        let brush = Brush { varyings, gradients, one_over_area: Lanes::splat(setup.one_over_area) };
+        let brush = Brush::new(frame, triangle, setup.one_over_area);
+        let (rows, groups) = self.rows_and_groups(area);
+        let rows = &mut self.rows[rows];
+        if is_plain(frame.state) {
+            draw_area::<true, S, E, N>(frame, &brush, &edges, rows, groups);
+        } else {
+            draw_area::<false, S, E, N>(frame, &brush, &edges, rows, groups);
+        }
+    }
+
+    /// Where in the tile an area of whole groups is.
+    fn rows_and_groups(&self, area: Rect) -> (Range<usize>, Range<usize>) {
         let [bottom, left] = self.place(area.left, area.bottom);
         let [top, right] = self.place(area.right, area.top);
-        let rows = &mut self.rows[bottom..top];
-        let groups = left / LANES..right / LANES;
-        let all_are_kept = if is_plain(frame.state) {
-            draw_area::<true, S, E, N>(frame.shader, frame.state, &brush, &edges, rows, groups)
-        } else {
-            draw_area::<false, S, E, N>(frame.shader, frame.state, &brush, &edges, rows, groups)
-        };
-        if !all_are_kept {
-            frame.discards.store(true, Ordering::Relaxed);
-        }
+        (bottom..top, left / LANES..right / LANES)
     }
 }
 
@@ -294,51 +331,93 @@ struct Brush<const N: usize> {
     one_over_area: Lanes,
 }
 
-/// Draws the rows of a triangle in a tile, eight pixels at a time. Whether the shader keeps all fragments.
+impl<const N: usize> Brush<N> {
+    fn new<S: Shader<N>>(frame: &Frame<'_, S, N>, triangle: Triangle<'_>, one_over_area: f32) -> Self {
+        let corners = triangle.records.map(corner_of::<N>);
+        Self {
+            varyings: TriangleVaryings::between(corners, frame.state.interpolation),
+            gradients: if S::USES_DERIVATIVES { gradients(triangle.places) } else { [[Lanes::ZERO; 2]; 2] },
+            one_over_area: Lanes::splat(one_over_area),
+        }
+    }
+}
+
+impl Row {
+    /// Some of its groups of eight: colors and depths.
+    #[inline(always)]
+    fn groups(
+        &mut self,
+        groups: Range<usize>,
+    ) -> impl Iterator<Item = (&mut [Color; LANES], &mut [f32; LANES])> {
+        let colors = &mut self.colors.as_chunks_mut().0[groups.clone()];
+        colors.iter_mut().zip(&mut self.depths.as_chunks_mut().0[groups])
+    }
+}
+
+/// Draws the groups that a triangle touches.
 ///
 /// A function by itself, so that the compiler knows that nothing that is written here changes what is read.
 #[inline(never)]
+fn draw_touched<const PLAIN: bool, S: Shader<N>, const N: usize>(
+    frame: &Frame<'_, S, N>,
+    brush: &Brush<N>,
+    setup: &Narrow,
+    touched: &[Touch],
+    rows: &mut [Row],
+    first: usize,
+) {
+    let mut kept = LaneMask::all(true);
+    for &touch in touched {
+        let mask = LaneMask::of_bits(i32::from(touch.covered));
+        let (row, group) = (&mut rows[usize::from(touch.row)], first + usize::from(touch.group));
+        let colors = &mut row.colors.as_chunks_mut().0[group];
+        let depths = &mut row.depths.as_chunks_mut().0[group];
+        let keep = draw_group::<PLAIN, S, N>(frame, brush, mask, setup.group(touch), colors, depths);
+        kept = kept.and(keep);
+    }
+    frame.note(kept);
+}
+
+/// Draws the rows of a triangle, eight pixels at a time. A function by itself, as well.
+#[inline(never)]
 fn draw_area<const PLAIN: bool, S: Shader<N>, E: Edges, const N: usize>(
-    shader: &S,
-    state: &RenderState,
+    frame: &Frame<'_, S, N>,
     brush: &Brush<N>,
     edges: &E,
     rows: &mut [Row],
     groups: Range<usize>,
-) -> bool {
+) {
     let mut kept = LaneMask::all(true);
     let mut first = edges.first();
     for row in rows {
         let mut group = first;
-        let colors = row.colors.as_chunks_mut::<LANES>().0[groups.clone()].iter_mut();
-        let depths = row.depths.as_chunks_mut::<LANES>().0[groups.clone()].iter_mut();
-        for (colors, depths) in colors.zip(depths) {
-            kept =
-                kept.and(draw_group::<PLAIN, S, E, N>(shader, state, brush, &group, edges, colors, depths));
+        for (colors, depths) in row.groups(groups.clone()) {
+            let mask = edges.covered(&group);
+            if mask.bits() != 0 {
+                let values = E::values(&group);
+                let keep = draw_group::<PLAIN, S, N>(frame, brush, mask, values, colors, depths);
+                kept = kept.and(keep);
+            }
             edges.step_right(&mut group);
         }
         edges.step_up(&mut first);
     }
-    kept.bits() == LaneMask::all(true).bits()
+    frame.note(kept);
 }
 
-/// Tests, shades and writes eight neighbors, as far as they are covered. Which of them the shader keeps.
+/// Tests, shades and writes the covered ones of eight neighbors. Which of them the shader keeps.
 #[inline(always)]
-fn draw_group<const PLAIN: bool, S: Shader<N>, E: Edges, const N: usize>(
-    shader: &S,
-    state: &RenderState,
+fn draw_group<const PLAIN: bool, S: Shader<N>, const N: usize>(
+    frame: &Frame<'_, S, N>,
     brush: &Brush<N>,
-    group: &E::Group,
-    edges: &E,
+    mut mask: LaneMask,
+    values: [Lanes; 2],
     colors: &mut [Color; LANES],
     depths: &mut [f32; LANES],
 ) -> LaneMask {
-    let mut mask = edges.covered(group);
-    if mask.bits() == 0 {
-        return LaneMask::all(true);
-    }
+    let (shader, state) = (frame.shader, frame.state);
     let Brush { varyings, gradients, one_over_area } = brush;
-    let weights = E::values(group).map(|value| value * *one_over_area);
+    let weights = values.map(|value| value * *one_over_area);
     let interpolation = if PLAIN { Interpolation::PerspectiveCorrect } else { state.interpolation };
 
     // Depth first: what is hidden need not be shaded.
