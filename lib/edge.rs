@@ -43,8 +43,10 @@
 //! # Ok::<(), &str>(())
 //! ```
 
+use std::array::from_fn;
 use std::fmt::Debug;
 use std::marker::PhantomData;
+use std::ops::Range;
 
 use arrayvec::ArrayVec;
 use glam::{DVec2, dvec2, dvec4};
@@ -147,7 +149,31 @@ impl EdgeFunction {
     #[must_use]
     #[inline]
     pub fn covers(&self, value: i64) -> bool {
-        value > 0 || (value == 0 && self.is_top_left())
+        value >= self.least()
+    }
+
+    /// The least value on the triangle's side: whole numbers are positive from 1 on, and 0 is on the edge itself.
+    #[inline]
+    fn least(&self) -> i64 {
+        if self.is_top_left() { 0 } else { 1 }
+    }
+
+    /// Which of some columns of a row are on the triangle's side, if the function has this value in the first of them.
+    ///
+    /// The nth column after the first has value + n · step, and is on that side if n · step ≥ least − value: from some
+    /// column on where the function grows, up to some column where it falls.
+    #[inline]
+    fn columns(&self, columns: Range<i32>, value: i64) -> Range<i32> {
+        let [start, end] = [columns.start, columns.end].map(i64::from);
+        let (step, missing) = (self.step_x * SUBPIXELS, self.least() - value);
+        let covered = match step {
+            1.. => start - (-missing).div_euclid(step)..end,
+            0 if missing > 0 => end..end,
+            0 => start..end,
+            _ => start..start + (-missing).div_euclid(-step) + 1,
+        };
+        let [first, end] = [covered.start, covered.end].map(|column| column.max(start).min(end) as i32);
+        first..end
     }
 }
 // ANCHOR_END: edge_function
@@ -248,19 +274,26 @@ impl Coverage {
         let window = window.into();
         let area = self.bounding_box(window.rect);
         let announced = Announced::new(window, self);
-        let steps = self.edges.map(|edge| edge.step_x * SUBPIXELS);
         area.rows().flat_map(move |y| {
             // All of it, so that it lives as long as the rows do.
             let announced = &announced;
-            let coverage = announced.coverage;
-            let mut values = coverage.edge_values(center(area.left, y));
-            area.columns().filter_map(move |x| {
-                let here = values;
-                for (value, step) in values.iter_mut().zip(steps) {
-                    *value += step;
-                }
-                coverage.covers(here).then_some((x, y, here))
-            })
+            announced.coverage.row(area.columns(), y).map(move |(x, values)| (x, y, values))
+        })
+    }
+
+    /// The same for some columns of one row, from left to right. The covered ones lie side by side.
+    #[inline]
+    fn row(&self, columns: Range<i32>, y: i32) -> impl Iterator<Item = (i32, [i64; 3])> + use<> {
+        let values = self.edge_values(center(columns.start, y));
+        let [a, b, c] = from_fn(|i| self.edges[i].columns(columns.clone(), values[i]));
+        let covered = a.start.max(b.start).max(c.start)..a.end.min(b.end).min(c.end);
+
+        let mut values = self.edge_values(center(covered.start, y));
+        let steps = self.edges.map(|edge| edge.step_x * SUBPIXELS);
+        covered.map(move |x| {
+            let here = values;
+            values = from_fn(|i| here[i] + steps[i]);
+            (x, here)
         })
     }
 }
@@ -275,8 +308,9 @@ struct Announced {
 impl Announced {
     #[inline]
     fn new(window: Window, coverage: &Coverage) -> Self {
-        window.tell(|probe| probe.coverage(coverage));
-        Self { window, coverage: *coverage }
+        let announced = Self { window, coverage: *coverage };
+        announced.window.tell(|probe| probe.coverage(&announced.coverage));
+        announced
     }
 }
 
@@ -375,29 +409,33 @@ fn draw_triangle<R: Scalar, S: Shader<N>, P: Probe + ?Sized, const N: usize>(
     let varyings = TriangleVaryings::<R, N>::new(triangle, state.interpolation);
     let gradients = coverage.weight_gradients();
 
-    for (x, y, values) in coverage.pixels(window) {
-        // Interpolation.
-        let weights = coverage.weights(values);
-        let point = varyings.at(weights);
-        let depth =
-            if state.depth_encoding.is_linear_on_screen() { varyings.depth_at(weights) } else { point.w };
-        // Fragment shading.
-        let shaded: Shaded<R> = if S::USES_DERIVATIVES {
-            shader.fragment_with_derivatives(point.values, varyings.derivatives(&point, gradients))
-        } else {
-            shader.fragment(point.values)
-        };
-        // Depth test, and blending.
-        let verdict = merge(target, state.merge, Rounding::Nearest, [x, y], depth, shaded);
-        probe.fragment(&FragmentEvent {
-            x,
-            y,
-            w: point.w.into(),
-            depth: depth.into(),
-            varyings: &point.values.map(Into::into),
-            color: shaded.color.map(Into::into),
-            verdict,
-        });
+    let area = coverage.bounding_box(window.rect);
+    let _announced = Announced::new(window, &coverage);
+    for y in area.rows() {
+        for (x, values) in coverage.row(area.columns(), y) {
+            // Interpolation.
+            let weights = coverage.weights(values);
+            let point = varyings.at(weights);
+            let depth =
+                if state.depth_encoding.is_linear_on_screen() { varyings.depth_at(weights) } else { point.w };
+            // Fragment shading.
+            let shaded: Shaded<R> = if S::USES_DERIVATIVES {
+                shader.fragment_with_derivatives(point.values, varyings.derivatives(&point, gradients))
+            } else {
+                shader.fragment(point.values)
+            };
+            // Depth test, and blending.
+            let verdict = merge(target, state.merge, Rounding::Nearest, [x, y], depth, shaded);
+            probe.fragment(&FragmentEvent {
+                x,
+                y,
+                w: point.w.into(),
+                depth: depth.into(),
+                varyings: &point.values.map(Into::into),
+                color: shaded.color.map(Into::into),
+                verdict,
+            });
+        }
     }
 }
 // ANCHOR_END: draw_triangle

@@ -99,11 +99,11 @@ impl Rounding {
     #[must_use]
     #[inline]
     pub fn color<R: Scalar>(self, channels: [R; 3]) -> Color {
-        let half = match self {
-            Self::Truncate => R::of(0.0),
-            Self::Nearest => R::of(0.5),
+        let channels = match self {
+            Self::Truncate => channels,
+            Self::Nearest => channels.map(|channel| channel + R::of(0.5)),
         };
-        Color::truncated(channels.map(|channel| (channel + half).into()))
+        Color::truncated(channels.map(Into::into))
     }
 }
 

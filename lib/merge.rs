@@ -73,7 +73,7 @@ pub enum Verdict {
 
 // ANCHOR: merge
 /// Merges a fragment into the target at (x, y): depth test, blending, writing.
-#[inline]
+#[inline(always)]
 pub fn merge<R: Scalar>(
     target: &mut Target<R>,
     options: Merge,
@@ -93,7 +93,11 @@ pub fn merge<R: Scalar>(
     if !passes {
         return Verdict::Hidden;
     }
-    let there = target.color.get(x, y).unwrap_or_default().to_f64().map(R::of);
+    let there = match options.blend {
+        Blend::Opaque => None, // What was there does not show.
+        Blend::SourceOver | Blend::Additive => target.color.get(x, y),
+    };
+    let there = there.unwrap_or_default().to_f64().map(R::of);
     let color = rounding.color(options.blend.apply(shaded.color, there));
     target.color.set(x, y, color);
     Verdict::Drawn(color)

@@ -160,7 +160,9 @@ macro_rules! plain_number {
 
             #[inline]
             fn look_up_color(column: Self, row: Self, width: u32, colors: &[Color]) -> [Self; 3] {
-                colors[row as usize * width as usize + column as usize].to_f64().map(Self::of)
+                // A plane has fewer than 2³² columns and rows; from a float, a `u32` is made faster than a `usize`.
+                let [column, row] = [column, row].map(|index| index as u32 as usize);
+                colors[row * width as usize + column].to_f64().map(Self::of)
             }
         }
     };

@@ -11,7 +11,7 @@ use rasterbook::clip::{
 };
 use rasterbook::cull::CullMode;
 use rasterbook::depth::{DepthTest, Target};
-use rasterbook::edge::{Coverage, Exact, SUBPIXELS, Subpixel, snap};
+use rasterbook::edge::{Coverage, Exact, SUBPIXELS, Subpixel, center, snap};
 use rasterbook::interpolate::Interpolation;
 use rasterbook::merge::{Blend, Merge};
 use rasterbook::mesh::Mesh;
@@ -173,6 +173,18 @@ proptest! {
         let turned: Vec<DVec2> = points.iter().map(|p| DVec2::from(center) + DVec2::from_angle(rotation).rotate(*p)).collect();
         let triangles: Vec<[DVec2; 3]> = triangles.iter().map(|triangle| triangle.map(|i| turned[i])).collect();
         prop_assert_eq!(signed_counts(&triangles), winding_numbers(&turned[rim]));
+    }
+}
+
+proptest! {
+    #[test]
+    fn far_corners_cover_what_each_pixel_says(corners in prop::array::uniform3((-65_000.0..65_000.0, -65_000.0..65_000.0))) {
+        if let Some(coverage) = Coverage::new(corners.map(DVec2::from)) {
+            let is_covered = |&(x, y): &(i32, i32)| coverage.covers(coverage.edge_values(center(x, y)));
+            let one_by_one = WINDOW.rows().flat_map(|y| WINDOW.columns().map(move |x| (x, y))).filter(is_covered);
+            prop_assert!(coverage.pixels(WINDOW).map(|(x, y, _)| (x, y)).eq(one_by_one));
+            prop_assert!(coverage.pixels(WINDOW).all(|(x, y, values)| values == coverage.edge_values(center(x, y))));
+        }
     }
 }
 
