@@ -146,14 +146,19 @@ impl Narrow {
     }
 
     /// Which groups of eight are touched in an area of so many rows and groups: written to a list, from below.
-    pub(super) fn touched<'a>(&self, rows: usize, groups: usize, list: &'a mut Touches) -> &'a [Touch] {
+    pub(super) fn touched<'a>(
+        &self,
+        rows: usize,
+        groups: usize,
+        list: &'a mut [Touch; GROUPS],
+    ) -> &'a [Touch] {
         let right = self.right.map(|step| i32x8::splat(step * LANES as i32));
         let mut count = 0;
         self.rows(rows, |row, mut values| {
             for group in 0..groups {
                 let covered = covered_bits(values);
                 // Always written, but counted only if there is something: no branch to be foreseen.
-                list[count % list.len()] = Touch { row: row as u8, group: group as u8, covered };
+                list[count % GROUPS] = Touch { row: row as u8, group: group as u8, covered };
                 count += usize::from(covered != 0);
                 values = from_fn(|i| values[i] + right[i]);
             }
@@ -198,8 +203,8 @@ pub(super) struct Touch {
     pub(super) covered: u8,
 }
 
-/// Room for all groups of a tile.
-pub(super) type Touches = [Touch; (TILE_HEIGHT * TILE_WIDTH) as usize / LANES];
+/// How many groups a tile has.
+pub(super) const GROUPS: usize = (TILE_HEIGHT * TILE_WIDTH) as usize / LANES;
 
 /// The edge functions of larger triangles in an area, eight centers at a time: from the lowest row up, and in a row from
 /// left to right.

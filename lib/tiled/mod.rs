@@ -1,12 +1,12 @@
 //! Beyond the book: the fast rasterizer. What [`Exact`](crate::edge::Exact) draws in `f32`, to the last bit, in a
 //! fraction of the time.
 //!
-//! Four things make the difference, and each is a file: eight fragments are shaded at a time
+//! Five things make the difference, and each is a file: eight fragments are shaded at a time
 //! ([`lanes`](crate::lanes)); every vertex is made ready once, however many triangles share it, and triangles that turn
 //! away are gone before anything is reckoned for them (`front.rs`); triangles are sorted into *tiles*, rectangles of
 //! the picture that fit into the processor's nearest memory, so that no two threads ever write to the same place
-//! (`bins`, in `front.rs`); and within a tile, triangles that cover only a few pixels share the eight lanes with others
-//! (`tile.rs`).
+//! (`bins`, in `front.rs`); within a tile, triangles that cover only a few pixels share the eight lanes with others
+//! (`tile.rs`); and what is hidden in all of a tile is left out there (`occlusion.rs`).
 //!
 //! ```text
 //!   vertices ──► shaded, divided, ──► triangles: culled, ──► bins: for each tile, ──► tiles: coverage, depth,
@@ -50,7 +50,8 @@
 //! ```
 //!
 //! Sources: J. Pineda, A parallel algorithm for polygon rasterization, 1988; M. Abrash, Rasterization on Larrabee, 2009;
-//! S. Laine and T. Karras, High-performance software rasterization on GPUs, 2011.
+//! S. Laine and T. Karras, High-performance software rasterization on GPUs, 2011; N. Greene, M. Kass and G. Miller,
+//! Hierarchical Z-buffer visibility, 1993.
 
 mod edges;
 mod front;

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use wide::{f32x8, i32x8};
 
-use super::edges::{Edges, Huge, Narrow, Setup, Split, Touch, Touches, gradients, is_narrow};
+use super::edges::{Edges, GROUPS, Huge, Narrow, Setup, Split, Touch, gradients, is_narrow};
 use super::front::{Front, Source, Triangle, bounding_box};
 use super::occlusion::{depth_range, hidden_behind};
 use super::{Band, TILE_HEIGHT, TILE_WIDTH};
@@ -38,7 +38,8 @@ pub(super) struct Tile {
     behind: f64,
     rows: [Row; TILE_HEIGHT as usize],
     queue: Queue,
-    touches: Touches,
+    /// The groups that a triangle touches.
+    touches: [Touch; GROUPS],
 }
 
 /// A row of a tile. Colors and depths of a pixel are near each other, but never at the same place of two memory pages,
@@ -81,7 +82,7 @@ impl Tile {
             behind: f64::INFINITY,
             rows: [row; TILE_HEIGHT as usize],
             queue,
-            touches: [Touch::default(); size_of::<Touches>() / size_of::<Touch>()],
+            touches: [Touch::default(); GROUPS],
         }
     }
 
@@ -436,6 +437,7 @@ fn draw_group<const PLAIN: bool, S: Shader<N>, const N: usize>(
     } else {
         shader.fragment(point.values)
     };
+    let thrown_away = mask.and(shaded.keep.not());
     mask = mask.and(shaded.keep);
 
     // Mostly all eight are written. If not, what is there stays in the other lanes.
@@ -451,7 +453,7 @@ fn draw_group<const PLAIN: bool, S: Shader<N>, const N: usize>(
     };
     let words = if is_whole { words } else { mask.choose(words, there) };
     *colors = words.to_array().map(|word| Color::from_bits(word as u32));
-    shaded.keep
+    thrown_away.not()
 }
 // ANCHOR_END: rows
 
