@@ -55,7 +55,8 @@ pub trait Rasterizer {
     /// The precision of depths.
     type Depth: Scalar;
 
-    /// Draws the triangles in order. Fragments reach a pixel in the order of their triangles.
+    /// Draws the triangles in order, onto what is in the target: the load operation of the state is the pipeline's affair.
+    /// Fragments reach a pixel in the order of their triangles.
     fn draw<S: Shader<N>, P: Probe + ?Sized, const N: usize>(
         &self,
         triangles: impl Iterator<Item = [NdcVertex<N>; 3]>,
@@ -65,7 +66,8 @@ pub trait Rasterizer {
         probe: &P,
     );
 
-    /// Draws a whole mesh, all stages of the pipeline, if the rasterizer has a way of its own to do so; `false` if not.
+    /// Draws a whole mesh, all stages of the pipeline and the load operation, if the rasterizer has a way of its own to do
+    /// so; `false` if not.
     fn draw_mesh<S: Shader<N>, const N: usize>(
         &self,
         _mesh: &Mesh<S::Attributes>,
