@@ -418,7 +418,7 @@ fn draw_group<const PLAIN: bool, S: Shader<N>, const N: usize>(
 ) -> LaneMask {
     let (shader, state) = (frame.shader, frame.state);
     let Brush { varyings, gradients, one_over_area } = brush;
-    let weights = values.map(|value| value * *one_over_area);
+    let weights = [values[0] * *one_over_area, values[1] * *one_over_area];
     let interpolation = if PLAIN { Interpolation::PerspectiveCorrect } else { state.interpolation };
 
     // Depth first: what is hidden need not be shaded.
@@ -463,6 +463,7 @@ fn corner_of<const N: usize>(record: &[f32x8]) -> CornerVaryings<Lanes, N> {
     CornerVaryings { distance: number(0), depth: number(1), values: from_fn(|k| number(k + 2)) }
 }
 
+#[inline(always)]
 fn passes(test: DepthTest, depth: Lanes, stored: Lanes) -> LaneMask {
     match test {
         DepthTest::Less => depth.is_less(stored),
