@@ -60,7 +60,7 @@ use crate::merge::merge;
 use crate::pipeline::RenderState;
 use crate::probe::{FragmentEvent, Probe, Vertex, Window};
 use crate::raster::Rasterizer;
-use crate::real::Scalar;
+use crate::real::{Real, Scalar};
 use crate::shader::{Shaded, Shader};
 use crate::varyings::{TriangleVaryings, WeightGradients, weight_gradients};
 
@@ -141,8 +141,7 @@ impl EdgeFunction {
     #[must_use]
     #[inline]
     pub fn is_top_left(&self) -> bool {
-        let (runs_down, is_level, runs_left) = (self.step_x > 0, self.step_x == 0, self.step_y < 0);
-        runs_down || (is_level && runs_left)
+        is_top_left(self.step_x, self.step_y)
     }
 
     /// Whether a point at which the function has this value is on the triangle's side.
@@ -154,7 +153,7 @@ impl EdgeFunction {
 
     /// The least value on the triangle's side: whole numbers are positive from 1 on, and 0 is on the edge itself.
     #[inline]
-    fn least(&self) -> i64 {
+    pub(crate) fn least(&self) -> i64 {
         if self.is_top_left() { 0 } else { 1 }
     }
 
@@ -176,7 +175,21 @@ impl EdgeFunction {
         first..end
     }
 }
+
+/// The rule by itself, for whole numbers of any size.
+#[inline]
+pub(crate) fn is_top_left<I: PartialOrd + Default>(step_x: I, step_y: I) -> bool {
+    let zero = I::default();
+    let (runs_down, is_level, runs_left) = (step_x > zero, step_x == zero, step_y < zero);
+    runs_down || (is_level && runs_left)
+}
 // ANCHOR_END: edge_function
+
+/// How the weights of the second and the third of three vertices change from pixel to pixel.
+#[inline]
+pub(crate) fn gradients_between<R: Real>(vertices: [Subpixel; 3]) -> WeightGradients<R> {
+    weight_gradients(vertices.map(|[x, y]| dvec2(x as f64, y as f64) / SUBPIXELS as f64))
+}
 
 // ANCHOR: coverage
 /// Which points of the screen a triangle covers, and how much each vertex weighs there.
@@ -243,7 +256,7 @@ impl Coverage {
     /// How the two weights change from pixel to pixel.
     #[must_use]
     pub fn weight_gradients<R: Scalar>(&self) -> WeightGradients<R> {
-        weight_gradients(self.vertices.map(|[x, y]| dvec2(x as f64, y as f64) / SUBPIXELS as f64))
+        gradients_between(self.vertices)
     }
 
     /// The pixels of the window whose centers lie in the bounding box of the triangle.

@@ -8,10 +8,9 @@ use wide::i32x8;
 use super::front::{Place, signed_area};
 use super::{TILE_HEIGHT, TILE_WIDTH};
 use crate::Rect;
-use crate::edge::{EdgeFunction, SUBPIXELS, center};
+use crate::edge::{EdgeFunction, SUBPIXELS, center, is_top_left};
 use crate::lanes::{LANES, LaneMask, Lanes, is_less_or_equal};
 use crate::real::Mask;
-use crate::varyings::WeightGradients;
 
 /// The three edges of a triangle, each on the left of its inside, opposite to its vertex.
 pub(super) struct Setup {
@@ -29,19 +28,13 @@ impl Setup {
             EdgeFunction::new(from.map(i64::from), to.map(i64::from))
         };
         let edges = [edge(b, c), edge(c, a), edge(a, b)];
-        let shy = edges.map(|edge| i64::from(!edge.is_top_left()));
+        let shy = edges.map(|edge| edge.least());
         Self { edges, shy, one_over_area: 1.0 / (signed_area.abs() as f32) }
     }
 
     /// The least and the greatest value of an edge function at the centers of a rectangle, less what keeps a tie out.
     fn range(&self, i: usize, area: Rect) -> [i64; 2] {
-        let corners = [
-            (area.left, area.bottom),
-            (area.right - 1, area.bottom),
-            (area.left, area.top - 1),
-            (area.right - 1, area.top - 1),
-        ];
-        let values = corners.map(|(x, y)| self.edges[i].at(center(x, y)) - self.shy[i]);
+        let values = corners(area).map(|corner| self.edges[i].at(corner) - self.shy[i]);
         [values.into_iter().fold(i64::MAX, i64::min), values.into_iter().fold(i64::MIN, i64::max)]
     }
 
@@ -62,10 +55,9 @@ impl Setup {
     }
 }
 
-/// How the weights of the second and third vertex change per pixel.
-pub(super) fn gradients(places: [Place; 3]) -> WeightGradients<Lanes> {
-    let corners = places.map(|[x, y]| glam::dvec2(f64::from(x), f64::from(y)) / SUBPIXELS as f64);
-    crate::varyings::weight_gradients(corners)
+/// The outermost centers of a rectangle: what changes evenly has its extremes there.
+pub(super) fn corners(Rect { left, bottom, right, top }: Rect) -> [[i64; 2]; 4] {
+    [(left, bottom), (right - 1, bottom), (left, top - 1), (right - 1, top - 1)].map(|(x, y)| center(x, y))
 }
 
 /// Whether all values of a triangle's edge functions near it fit into 32 bits.
@@ -105,12 +97,11 @@ impl Narrow {
         let edges = [[b, c], [c, a], [a, b]];
         let right = edges.map(|[from, to]| (from[1] - to[1]) * sign);
         let up = edges.map(|[from, to]| (to[0] - from[0]) * sign);
-        let is_top_left = |i: usize| right[i] > 0 || (right[i] == 0 && up[i] < 0);
         Self {
             start: start.map(|value| value * sign),
             right: right.map(|step| step * PIXEL),
             up: up.map(|step| step * PIXEL),
-            shy: from_fn(|i| i32::from(!is_top_left(i))),
+            shy: from_fn(|i| i32::from(!is_top_left(right[i], up[i]))),
             one_over_area: 1.0 / (area.abs() as f32),
         }
     }

@@ -373,6 +373,9 @@ pub(super) fn signed_area([a, b, c]: [Place; 3]) -> i64 {
 }
 
 /// The pixels of the window whose centers lie in the bounding box; `None` if there are none.
+///
+/// As [`Coverage::bounding_box`](crate::edge::Coverage::bounding_box), but in the 32 bits that places have here: it is
+/// asked for every triangle, and once more in each of its tiles.
 pub(super) fn bounding_box([a, b, c]: [Place; 3], window: Rect) -> Option<Rect> {
     const PIXEL: i32 = SUBPIXELS as i32;
     let range = |axis: usize| {

@@ -150,12 +150,13 @@ impl Band<'_> {
         for (column, left) in self.rect.columns().step_by(TILE_WIDTH as usize).enumerate() {
             let rect = Rect { left, right: (left + TILE_WIDTH).min(self.rect.right), ..self.rect };
             if !frame.front.is_empty([column, row]) {
-                tile.load(rect, &self);
-                tile.draw(frame, || frame.front.triangles_in(frame.source, [column, row]));
-                if tile.has_holes(frame) {
-                    // What seemed to cover the tile does not: once more, with all triangles.
+                // Once more, with all triangles, if what seemed to cover the tile has holes.
+                loop {
                     tile.load(rect, &self);
                     tile.draw(frame, || frame.front.triangles_in(frame.source, [column, row]));
+                    if !tile.has_holes(frame) {
+                        break;
+                    }
                 }
                 tile.store(&mut self);
             }

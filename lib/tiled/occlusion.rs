@@ -1,10 +1,9 @@
 //! What is hidden in all of a tile need not be drawn there.
 
-use super::edges::{Setup, is_narrow};
+use super::edges::{Setup, corners, is_narrow};
 use super::front::{Triangle, bounding_box};
 use super::tile::{Frame, is_plain};
 use crate::Rect;
-use crate::edge::center;
 use crate::shader::Shader;
 
 /// No depth is behind this one.
@@ -46,15 +45,8 @@ pub(super) fn hidden_behind<'a, S: Shader<N>, const N: usize>(
 pub(super) fn depth_range(setup: &Setup, triangle: Triangle<'_>, rect: Rect) -> [f64; 2] {
     let [first, second, third] = triangle.records.map(|record| f64::from(record[0].as_array_ref()[1]));
     let (to_second, to_third) = (second - first, third - first);
-    // Depths change evenly: the extremes are in the corners.
-    let corners = [
-        (rect.left, rect.bottom),
-        (rect.right - 1, rect.bottom),
-        (rect.left, rect.top - 1),
-        (rect.right - 1, rect.top - 1),
-    ];
-    let depths = corners.map(|(x, y)| {
-        let [second, third] = [1, 2].map(|i| setup.edges[i].at(center(x, y)) as f64);
+    let depths = corners(rect).map(|corner| {
+        let [second, third] = [1, 2].map(|i| setup.edges[i].at(corner) as f64);
         first + (to_second * second + to_third * third) * f64::from(setup.one_over_area)
     });
     // A pixel's depth takes some seven roundings of 2⁻²⁴ each.

@@ -6,11 +6,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use wide::{f32x8, i32x8};
 
-use super::edges::{Edges, GROUPS, Huge, Narrow, Setup, Split, Touch, gradients, is_narrow};
+use super::edges::{Edges, GROUPS, Huge, Narrow, Setup, Split, Touch, is_narrow};
 use super::front::{Front, Source, Triangle, bounding_box};
 use super::occlusion::{depth_range, hidden_behind};
 use super::{Band, TILE_HEIGHT, TILE_WIDTH};
 use crate::depth::DepthTest;
+use crate::edge::gradients_between;
 use crate::interpolate::{Interpolation, Projected};
 use crate::lanes::{LANES, LaneMask, Lanes, channels, is_greater, is_less_or_equal, packed};
 use crate::merge::{Blend, Merge};
@@ -335,9 +336,10 @@ struct Brush<const N: usize> {
 impl<const N: usize> Brush<N> {
     fn new<S: Shader<N>>(frame: &Frame<'_, S, N>, triangle: Triangle<'_>, one_over_area: f32) -> Self {
         let corners = triangle.records.map(corner_of::<N>);
+        let vertices = triangle.places.map(|place| place.map(i64::from));
         Self {
             varyings: TriangleVaryings::between(corners, frame.state.interpolation),
-            gradients: if S::USES_DERIVATIVES { gradients(triangle.places) } else { [[Lanes::ZERO; 2]; 2] },
+            gradients: if S::USES_DERIVATIVES { gradients_between(vertices) } else { [[Lanes::ZERO; 2]; 2] },
             one_over_area: Lanes::splat(one_over_area),
         }
     }
