@@ -445,7 +445,7 @@ fn draw_triangle<R: Scalar, S: Shader<N>, P: Probe + ?Sized, const N: usize>(
                 w: point.w.into(),
                 depth: depth.into(),
                 varyings: &point.values.map(Into::into),
-                color: shaded.color.map(Into::into),
+                color: shaded.color.channels().map(Into::into),
                 verdict,
             });
         }

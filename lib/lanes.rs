@@ -85,6 +85,8 @@ pub(crate) fn is_greater(a: Lanes, b: Lanes) -> LaneMask {
 
 impl Real for f32x8 {
     type Mask = LaneMask;
+    /// Words 0x00RRGGBB.
+    type Colors = i32x8;
 
     #[inline]
     fn of(value: f64) -> Self {
@@ -145,21 +147,19 @@ impl Real for f32x8 {
     }
 
     #[inline]
-    fn look_up_color(column: Self, row: Self, width: u32, colors: &[Color]) -> [Self; 3] {
+    fn look_up_color(column: Self, row: Self, width: u32, colors: &[Color]) -> i32x8 {
         let places = row.fast_trunc_int() * i32x8::splat(width as i32) + column.fast_trunc_int();
         // By way of memory: taking eight numbers out of a register one by one would keep those parts of the processor
         // busy that the arithmetic needs. It changes nothing but the time.
         let places = black_box(cast::<i32x8, u32x8>(places).to_array());
-        let found: [i32; LANES] = from_fn(|lane| colors[places[lane] as usize].bits() as i32);
-        channels(i32x8::new(found))
+        i32x8::new(from_fn(|lane| colors[places[lane] as usize].bits() as i32))
     }
-}
 
-/// The channels of eight words 0x00RRGGBB, 0..=255.
-#[inline]
-pub(crate) fn channels(words: i32x8) -> [Lanes; 3] {
-    let byte = i32x8::splat(0xFF);
-    [(words >> 16) & byte, (words >> 8) & byte, words & byte].map(i32x8::round_float)
+    #[inline]
+    fn channels(words: i32x8) -> [Self; 3] {
+        let byte = i32x8::splat(0xFF);
+        [(words >> 16) & byte, (words >> 8) & byte, words & byte].map(i32x8::round_float)
+    }
 }
 
 /// The words of eight colors, channels rounded to the nearest of 0..=255; NaN gives 0.
@@ -222,7 +222,7 @@ mod tests {
         for (word, value) in packed(color).to_array().into_iter().zip(values) {
             assert_eq!(Color::from_bits(word as u32), Rounding::Nearest.color([value, 10.0, 20.0]));
         }
-        let [red, green, blue] = channels(i32x8::splat(0x0010_2030));
+        let [red, green, blue] = Lanes::channels(i32x8::splat(0x0010_2030));
         assert_eq!([red, green, blue].map(|lanes| lanes.to_array()[3]), [16.0, 32.0, 48.0]);
     }
 
@@ -231,7 +231,7 @@ mod tests {
         let colors: Vec<Color> = (0..6).map(|i| Color::rgb(i * 10, i, 255 - i)).collect();
         let columns = Lanes::new([0.0, 1.0, 2.0, 0.0, 1.0, 2.0, 1.0, 0.0]);
         let rows = Lanes::new([0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 0.0, 1.0]);
-        let [red, ..] = Lanes::look_up_color(columns, rows, 3, &colors);
+        let [red, ..] = Lanes::channels(Lanes::look_up_color(columns, rows, 3, &colors));
         assert_eq!(red.to_array(), [0.0, 10.0, 20.0, 30.0, 40.0, 50.0, 10.0, 30.0]);
     }
 }

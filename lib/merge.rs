@@ -15,7 +15,7 @@ use crate::Color;
 use crate::depth::{DepthTest, Target};
 use crate::framebuffer::Rounding;
 use crate::real::{Real, Scalar};
-use crate::shader::Shaded;
+use crate::shader::{Paint, Shaded};
 
 /// How a fragment's color and the color already there make the new one. Second note, output merger.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -93,12 +93,15 @@ pub fn merge<R: Scalar>(
     if !passes {
         return Verdict::Hidden;
     }
-    let there = match options.blend {
-        Blend::Opaque => None, // What was there does not show.
-        Blend::SourceOver | Blend::Additive => target.color.get(x, y),
+    let color = match (options.blend, shaded.color) {
+        // What was there does not show.
+        (Blend::Opaque, Paint::Texel(texel)) => texel,
+        (Blend::Opaque, Paint::Mixed([red, green, blue, _])) => rounding.color([red, green, blue]),
+        (blend, paint) => {
+            let there = R::channels(target.color.get(x, y).unwrap_or_default());
+            rounding.color(blend.apply(paint.channels(), there))
+        }
     };
-    let there = there.unwrap_or_default().to_f64().map(R::of);
-    let color = rounding.color(options.blend.apply(shaded.color, there));
     target.color.set(x, y, color);
     Verdict::Drawn(color)
 }
@@ -114,6 +117,21 @@ mod tests {
         assert_eq!(Blend::Opaque.apply([1.0, 2.0, 3.0, 0.25], there), [1.0, 2.0, 3.0]);
         assert_eq!(Blend::SourceOver.apply([200.0, 0.0, 250.0, 0.25], there), [125.0, 150.0, 100.0]);
         assert_eq!(Blend::Additive.apply([200.0, 200.0, 4.0, 0.5], there), [200.0, 255.0, 52.0]);
+    }
+
+    #[test]
+    fn a_texel_is_drawn_like_its_channels() {
+        let texel = Color::rgb(3, 128, 255);
+        for rounding in [Rounding::Truncate, Rounding::Nearest] {
+            for blend in [Blend::Opaque, Blend::SourceOver, Blend::Additive] {
+                let drawn = [Shaded::texel(texel), Shaded::opaque(texel.to_f64())].map(|shaded| {
+                    let mut target = Target::new(1, 1);
+                    target.clear(Color::rgb(100, 200, 1), 1.0);
+                    merge(&mut target, Merge { blend, ..Merge::default() }, rounding, [0, 0], 0.5, shaded)
+                });
+                assert_eq!(drawn[0], drawn[1], "{rounding:?}, {blend:?}");
+            }
+        }
     }
 
     #[test]

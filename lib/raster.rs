@@ -153,7 +153,7 @@ fn draw_triangle<S: Shader<N>, P: Probe + ?Sized, const N: usize>(
             w: point.w,
             depth,
             varyings: &point.values,
-            color: shaded.color,
+            color: shaded.color.channels(),
             verdict,
         });
     });

@@ -31,6 +31,8 @@ pub trait Real:
 {
     /// Yes or no for each of the numbers.
     type Mask: Mask;
+    /// A color for each of the numbers, as it is stored.
+    type Colors: Copy + Debug + PartialEq;
 
     /// A literal: the number nearest to `value`.
     fn of(value: f64) -> Self;
@@ -62,14 +64,17 @@ pub trait Real:
         row: Self,
         table: impl Fn(usize, usize) -> [f64; C],
     ) -> [Self; C];
-    /// The channels, 0..=255, of the color in a column and a row (not negative, fractions are cut off) of a plane of
-    /// colors that is so many columns wide. It must be inside the plane: outside, the answer is any color, or a panic.
+    /// The color in a column and a row (not negative, fractions are cut off) of a plane of colors that is so many columns
+    /// wide. It must be inside the plane: outside, the answer is any color, or a panic.
     #[must_use]
-    fn look_up_color(column: Self, row: Self, width: u32, colors: &[Color]) -> [Self; 3];
+    fn look_up_color(column: Self, row: Self, width: u32, colors: &[Color]) -> Self::Colors;
+    /// The channels of colors, 0..=255.
+    #[must_use]
+    fn channels(colors: Self::Colors) -> [Self; 3];
 }
 
 /// A single number: one answer to a comparison, and a value that can be stored.
-pub trait Scalar: Real<Mask = bool> + PartialOrd + Into<f64> {}
+pub trait Scalar: Real<Mask = bool, Colors = Color> + PartialOrd + Into<f64> {}
 
 impl Scalar for f64 {}
 impl Scalar for f32 {}
@@ -108,6 +113,7 @@ macro_rules! plain_number {
     ($number:ident) => {
         impl Real for $number {
             type Mask = bool;
+            type Colors = Color;
 
             #[inline]
             fn of(value: f64) -> Self {
@@ -159,10 +165,15 @@ macro_rules! plain_number {
             }
 
             #[inline]
-            fn look_up_color(column: Self, row: Self, width: u32, colors: &[Color]) -> [Self; 3] {
+            fn look_up_color(column: Self, row: Self, width: u32, colors: &[Color]) -> Color {
                 // A plane has fewer than 2³² columns and rows; from a float, a `u32` is made faster than a `usize`.
                 let [column, row] = [column, row].map(|index| index as u32 as usize);
-                colors[row * width as usize + column].to_f64().map(Self::of)
+                colors[row * width as usize + column]
+            }
+
+            #[inline]
+            fn channels(color: Color) -> [Self; 3] {
+                color.channels().map(Self::from)
             }
         }
     };

@@ -28,7 +28,7 @@
 //!
 //! let shader = Height { brightest: 255.0 };
 //! assert_eq!(shader.vertex(&dvec3(1.0, 0.5, 2.0)).varyings, [0.5]);
-//! assert_eq!(shader.fragment([0.5_f64]).color, [127.5, 127.5, 127.5, 1.0]);
+//! assert_eq!(shader.fragment([0.5_f64]).color.channels(), [127.5, 127.5, 127.5, 1.0]);
 //! ```
 
 use glam::DVec3;
@@ -72,10 +72,34 @@ pub trait Shader<const N: usize>: Sync {
 /// What a fragment shader says of a fragment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shaded<R: Real> {
-    /// Red, green and blue in 0..=255, and opacity in 0..=1.
-    pub color: [R; 4],
+    /// Its color.
+    pub color: Paint<R>,
     /// Where the fragment is drawn at all.
     pub keep: R::Mask,
+}
+
+/// The color of a fragment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Paint<R: Real> {
+    /// Red, green and blue in 0..=255, and opacity in 0..=1.
+    Mixed([R; 4]),
+    /// A texel as it is stored. It can be written as it is: nothing is taken apart, rounded and put together again.
+    Texel(R::Colors),
+}
+
+impl<R: Real> Paint<R> {
+    /// Red, green and blue in 0..=255, and opacity in 0..=1.
+    #[must_use]
+    #[inline]
+    pub fn channels(self) -> [R; 4] {
+        match self {
+            Self::Mixed(channels) => channels,
+            Self::Texel(texel) => {
+                let [red, green, blue] = R::channels(texel);
+                [red, green, blue, R::of(1.0)]
+            }
+        }
+    }
 }
 
 impl<R: Real> Shaded<R> {
@@ -90,7 +114,15 @@ impl<R: Real> Shaded<R> {
     #[must_use]
     #[inline]
     pub fn translucent([red, green, blue]: [R; 3], opacity: R) -> Self {
-        Self { color: [red, green, blue, opacity], keep: R::Mask::all(true) }
+        Self { color: Paint::Mixed([red, green, blue, opacity]), keep: R::Mask::all(true) }
+    }
+
+    /// A fragment that shows a texel, such as [`Texture::nearest_texel`](crate::texture::Texture::nearest_texel) gives,
+    /// as it is.
+    #[must_use]
+    #[inline]
+    pub fn texel(texel: R::Colors) -> Self {
+        Self { color: Paint::Texel(texel), keep: R::Mask::all(true) }
     }
 
     /// The same, but not drawn where the mask says so.

@@ -135,7 +135,14 @@ impl Texture {
     /// The book's early programs read past the array at u = 1; the address mode decides here.
     #[must_use]
     #[inline]
-    pub fn nearest<R: Real>(&self, [u, v]: [R; 2], mode: AddressMode) -> [R; 3] {
+    pub fn nearest<R: Real>(&self, uv: [R; 2], mode: AddressMode) -> [R; 3] {
+        R::channels(self.nearest_texel(uv, mode))
+    }
+
+    /// The same texel, as it is stored: who only shows it need not take it apart.
+    #[must_use]
+    #[inline]
+    pub fn nearest_texel<R: Real>(&self, [u, v]: [R; 2], mode: AddressMode) -> R::Colors {
         let [width, height] = self.size();
         let column = mode.index(u, width);
         let row = mode.index(v, height);
@@ -147,7 +154,9 @@ impl Texture {
     #[must_use]
     #[inline]
     pub fn bilinear<R: Real>(&self, uv: [R; 2], mode: AddressMode) -> [R; 3] {
-        bilinear(uv, self.size(), mode, |column, row| R::look_up_color(column, row, self.width, &self.texels))
+        bilinear(uv, self.size(), mode, |column, row| {
+            R::channels(R::look_up_color(column, row, self.width, &self.texels))
+        })
     }
 
     #[inline]

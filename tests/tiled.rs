@@ -22,7 +22,7 @@ use rasterbook::probe::Silent;
 use rasterbook::program::{RasterizerChoice, Sitting};
 use rasterbook::raster::{Rasterizer, Scanline};
 use rasterbook::real::Real;
-use rasterbook::shader::{Shaded, Shader};
+use rasterbook::shader::{Paint, Shaded, Shader};
 use rasterbook::texture::{AddressMode, Texture};
 use rasterbook::tiled::Tiled;
 use rasterbook::transform::Viewport;
@@ -76,8 +76,9 @@ impl Shader<5> for Sloped {
 
     fn fragment_with_derivatives<R: Real>(&self, varyings: [R; 5], change: Derivatives<R, 5>) -> Shaded<R> {
         let steep = (change.dx[3] * R::of(40.0)).max(change.dy[4] * R::of(25.0));
-        let Shaded { color: [r, g, b, a], keep } = self.fragment(varyings);
-        Shaded { color: [r + steep, g, b - steep, a], keep }
+        let Shaded { color, keep } = self.fragment(varyings);
+        let [r, g, b, a] = color.channels();
+        Shaded { color: Paint::Mixed([r + steep, g, b - steep, a]), keep }
     }
 }
 

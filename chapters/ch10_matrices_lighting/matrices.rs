@@ -32,7 +32,7 @@ impl Shader<2> for Textured {
     }
 
     fn fragment<R: Real>(&self, uv: [R; 2]) -> Shaded<R> {
-        Shaded::opaque(self.texture.nearest(uv, AddressMode::Clamp))
+        Shaded::texel(self.texture.nearest_texel(uv, AddressMode::Clamp))
     }
 }
 

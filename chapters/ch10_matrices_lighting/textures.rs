@@ -52,7 +52,7 @@ impl Shader<2> for Floor {
     }
 
     fn fragment<R: Real>(&self, uv: [R; 2]) -> Shaded<R> {
-        Shaded::opaque(self.texture.nearest(uv, self.mode))
+        Shaded::texel(self.texture.nearest_texel(uv, self.mode))
     }
 
     fn fragment_with_derivatives<R: Real>(&self, uv: [R; 2], change: Derivatives<R, 2>) -> Shaded<R> {

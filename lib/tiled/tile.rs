@@ -13,11 +13,11 @@ use super::{Band, TILE_HEIGHT, TILE_WIDTH};
 use crate::depth::DepthTest;
 use crate::edge::gradients_between;
 use crate::interpolate::{Interpolation, Projected};
-use crate::lanes::{LANES, LaneMask, Lanes, channels, is_greater, is_less_or_equal, packed};
+use crate::lanes::{LANES, LaneMask, Lanes, is_greater, is_less_or_equal, packed};
 use crate::merge::{Blend, Merge};
 use crate::pipeline::RenderState;
 use crate::real::{Mask, Real};
-use crate::shader::{Shaded, Shader};
+use crate::shader::{Paint, Shaded, Shader};
 use crate::varyings::{CornerVaryings, TriangleVaryings, WeightGradients};
 use crate::{Color, Rect};
 
@@ -219,7 +219,8 @@ impl Tile {
         let depths = if is_linear { corner.depth } else { point.w }.to_array();
         let shaded: Shaded<Lanes> = frame.shader.fragment(point.values);
         let kept = shaded.keep.bits();
-        let opaque = packed([shaded.color[0], shaded.color[1], shaded.color[2]]).to_array();
+        let opaque = opaque(shaded.color).to_array();
+        let channels = shaded.color.channels();
         for lane in (0..count).filter(|lane| kept >> lane & 1 == 1) {
             let [row, column] = self.queue.places[lane];
             let row = &mut self.rows[row];
@@ -232,7 +233,7 @@ impl Tile {
             }
             *color = match blend {
                 Blend::Opaque => Color::from_bits(opaque[lane] as u32),
-                _ => blended(blend, shaded.color.map(|channel| channel.to_array()[lane]), *color),
+                _ => blended(blend, channels.map(|channel| channel.to_array()[lane]), *color),
             };
         }
     }
@@ -450,8 +451,8 @@ fn draw_group<const PLAIN: bool, S: Shader<N>, const N: usize>(
     let there = i32x8::new(colors.map(|color| color.bits() as i32));
     let blend = if PLAIN { Blend::Opaque } else { state.merge.blend };
     let words = match blend {
-        Blend::Opaque => packed([shaded.color[0], shaded.color[1], shaded.color[2]]),
-        blend => packed(blend.apply(shaded.color, channels(there))),
+        Blend::Opaque => opaque(shaded.color),
+        blend => packed(blend.apply(shaded.color.channels(), Lanes::channels(there))),
     };
     let words = if is_whole { words } else { mask.choose(words, there) };
     *colors = words.to_array().map(|word| Color::from_bits(word as u32));
@@ -472,6 +473,15 @@ fn passes(test: DepthTest, depth: Lanes, stored: Lanes) -> LaneMask {
         DepthTest::LessOrEqual => is_less_or_equal(depth, stored),
         DepthTest::Greater => is_greater(depth, stored),
         DepthTest::Always => LaneMask::all(true),
+    }
+}
+
+/// The words of eight colors through which nothing shines.
+#[inline(always)]
+fn opaque(color: Paint<Lanes>) -> i32x8 {
+    match color {
+        Paint::Texel(texels) => texels,
+        Paint::Mixed([red, green, blue, _]) => packed([red, green, blue]),
     }
 }
 

@@ -120,7 +120,7 @@ impl Shader<2> for Unlit {
 
     #[inline(always)]
     fn fragment<R: Real>(&self, uv: [R; 2]) -> Shaded<R> {
-        Shaded::opaque(self.0.texture.nearest(uv, AddressMode::Repeat))
+        Shaded::texel(self.0.texture.nearest_texel(uv, AddressMode::Repeat))
     }
 }
 
