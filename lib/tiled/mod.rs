@@ -66,6 +66,7 @@ use rayon::prelude::*;
 
 use crate::clip::NdcVertex;
 use crate::depth::Target;
+use crate::lanes::LANES;
 use crate::mesh::Mesh;
 use crate::pipeline::{LoadOp, RenderState};
 use crate::probe::Probe;
@@ -127,49 +128,82 @@ fn draw_tiles<S: Shader<N>, const N: usize>(frame: &Frame<'_, S, N>, window: Rec
     bands.for_each(|(row, (colors, depths))| {
         let bottom = row as i32 * TILE_HEIGHT;
         let rect = Rect { bottom, top: (bottom + TILE_HEIGHT).min(window.top), ..window };
-        Band { rect, colors, depths }.draw(frame, row);
+        Band { rect, stride: width, colors, depths }.draw(frame, row);
     });
 }
 
-/// The rows of a picture in which a row of tiles lies.
+/// The rows of a picture in which a row of tiles lies, or a part of them.
 struct Band<'a> {
     rect: Rect,
+    /// How many pixels there are from one row to the next.
+    stride: usize,
     colors: &'a mut [Color],
     depths: &'a mut [f32],
 }
 
+/// Groups of eight neighbors, row by row, and how many there are in a row.
+type Groups<'a> = (usize, &'a mut [[Color; LANES]], &'a mut [[f32; LANES]]);
+
 impl Band<'_> {
     /// Draws its tiles, from left to right.
-    fn draw<S: Shader<N>, const N: usize>(mut self, frame: &Frame<'_, S, N>, row: usize) {
+    fn draw<S: Shader<N>, const N: usize>(self, frame: &Frame<'_, S, N>, row: usize) {
         if frame.state.load == LoadOp::Clear {
             // Here and not before: what was just written is still near when the tiles come.
             fill(self.colors, frame.state.clear_color);
             fill(self.depths, frame.state.clear_depth as f32);
         }
-        let mut tile = Tile::new();
-        for (column, left) in self.rect.columns().step_by(TILE_WIDTH as usize).enumerate() {
-            let rect = Rect { left, right: (left + TILE_WIDTH).min(self.rect.right), ..self.rect };
-            if !frame.front.is_empty([column, row]) {
-                // Once more, with all triangles, if what seemed to cover the tile has holes.
-                loop {
-                    tile.load(rect, &self);
-                    tile.draw(frame, || frame.front.triangles_in(frame.source, [column, row]));
-                    if !tile.has_holes(frame) {
-                        break;
-                    }
-                }
-                tile.store(&mut self);
+        let band = self.rect;
+        let mut tile = Tile::new(self);
+        for (column, left) in band.columns().step_by(TILE_WIDTH as usize).enumerate() {
+            let rect = Rect { left, right: (left + TILE_WIDTH).min(band.right), ..band };
+            let triangles = || frame.front.triangles_in(frame.source, [column, row]);
+            if frame.front.is_empty([column, row]) {
+                // Nothing to do.
+            } else if tile.band.stride.is_multiple_of(LANES) {
+                tile.draw(frame, rect, triangles);
+            } else {
+                tile.band.with_whole_groups(rect, |band| Tile::new(band).draw(frame, rect, triangles));
             }
         }
     }
 
-    /// Where the rows of a rectangle stand in the band.
+    /// Lets a rectangle be drawn in a copy, in which all rows consist of whole groups.
+    fn with_whole_groups(&mut self, rect: Rect, draw: impl FnOnce(Band<'_>)) {
+        const SIZE: usize = (TILE_WIDTH * TILE_HEIGHT) as usize;
+        let (mut colors, mut depths) = ([Color::BLACK; SIZE], [0.0; SIZE]);
+        let stride = TILE_WIDTH as usize;
+        for (row, place) in self.places(rect).enumerate() {
+            let near = row * stride..row * stride + place.len();
+            colors[near.clone()].copy_from_slice(&self.colors[place.clone()]);
+            depths[near].copy_from_slice(&self.depths[place]);
+        }
+        draw(Band { rect, stride, colors: &mut colors, depths: &mut depths });
+        for (row, place) in self.places(rect).enumerate() {
+            let near = row * stride..row * stride + place.len();
+            self.colors[place.clone()].copy_from_slice(&colors[near.clone()]);
+            self.depths[place].copy_from_slice(&depths[near]);
+        }
+    }
+
+    /// Where in the band a pixel stands.
+    fn place(&self, [x, y]: [i32; 2]) -> usize {
+        (y - self.rect.bottom) as usize * self.stride + (x - self.rect.left) as usize
+    }
+
+    /// Where the rows of a rectangle stand.
     fn places(&self, rect: Rect) -> impl Iterator<Item = Range<usize>> + use<> {
-        let window = self.rect;
-        rect.rows().map(move |y| {
-            let start = (y - window.bottom) as usize * window.columns().len();
-            start + rect.left as usize..start + rect.right as usize
+        let (first, stride) = (self.place([rect.left, rect.bottom]), self.stride);
+        (0..rect.rows().len()).map(move |row| {
+            let start = first + row * stride;
+            start..start + rect.columns().len()
         })
+    }
+
+    /// The groups from one on, by its lower left pixel.
+    fn groups_from(&mut self, corner: [i32; 2]) -> Groups<'_> {
+        let first = self.place(corner);
+        let (colors, depths) = (&mut self.colors[first..], &mut self.depths[first..]);
+        (self.stride / LANES, colors.as_chunks_mut().0, depths.as_chunks_mut().0)
     }
 }
 

@@ -7,7 +7,7 @@ use crate::Rect;
 use crate::shader::Shader;
 
 /// No depth is behind this one.
-const NOTHING_IS_HIDDEN: f64 = f64::INFINITY;
+pub(super) const NOTHING_IS_HIDDEN: f64 = f64::INFINITY;
 
 // ANCHOR: occlusion
 /// The depth behind which nothing can be seen in a tile: that of the nearest triangle that covers all of it, where it is

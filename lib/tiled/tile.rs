@@ -1,21 +1,20 @@
 //! One tile: coverage, depth test, shading and writing of the triangles in its bin.
 
 use std::array::from_fn;
-use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use wide::{f32x8, i32x8};
 
 use super::edges::{Edges, GROUPS, Huge, Narrow, Setup, Split, Touch, is_narrow};
 use super::front::{Front, Source, Triangle, bounding_box};
-use super::occlusion::{depth_range, hidden_behind};
-use super::{Band, TILE_HEIGHT, TILE_WIDTH};
+use super::occlusion::{NOTHING_IS_HIDDEN, depth_range, hidden_behind};
+use super::{Band, Groups};
 use crate::depth::DepthTest;
 use crate::edge::gradients_between;
 use crate::interpolate::{Interpolation, Projected};
 use crate::lanes::{LANES, LaneMask, Lanes, is_greater, is_less_or_equal, packed};
 use crate::merge::{Blend, Merge};
-use crate::pipeline::RenderState;
+use crate::pipeline::{LoadOp, RenderState};
 use crate::real::{Mask, Real};
 use crate::shader::{Paint, Shaded, Shader};
 use crate::varyings::{CornerVaryings, TriangleVaryings, WeightGradients};
@@ -31,25 +30,18 @@ pub(super) struct Frame<'a, S: Shader<N>, const N: usize> {
     pub(super) discards: AtomicBool,
 }
 
-/// A rectangle of the picture, brought near: a copy of its colors and depths in the processor's nearest memory.
-pub(super) struct Tile {
+/// The tile of a band that is being drawn.
+pub(super) struct Tile<'a> {
+    pub(super) band: Band<'a>,
     /// What of the tile lies in the picture.
     rect: Rect,
     /// Nothing that is deeper than this can be seen.
     behind: f64,
-    rows: [Row; TILE_HEIGHT as usize],
     queue: Queue,
     /// The groups that a triangle touches.
     touches: [Touch; GROUPS],
-}
-
-/// A row of a tile. Colors and depths of a pixel are near each other, but never at the same place of two memory pages,
-/// where a processor takes one for the other.
-#[derive(Clone, Copy)]
-#[repr(align(64))]
-struct Row {
-    colors: [Color; TILE_WIDTH as usize],
-    depths: [f32; TILE_WIDTH as usize],
+    /// What was in the tile, in case that it must be drawn again.
+    saved: (Vec<Color>, Vec<f32>),
 }
 
 /// Fragments of small triangles that wait until there are eight of them.
@@ -57,8 +49,8 @@ struct Queue {
     count: usize,
     /// 1/ω, depth, V/ω of each fragment.
     records: [f32x8; LANES],
-    /// The row and the column of each fragment in the tile.
-    places: [[usize; 2]; LANES],
+    /// Where in the band each fragment is.
+    places: [usize; LANES],
 }
 
 /// Up to this many pixels wide and high, a triangle is small.
@@ -73,54 +65,80 @@ impl<S: Shader<N>, const N: usize> Frame<'_, S, N> {
     }
 }
 
-impl Tile {
-    /// Room for a tile.
-    pub(super) fn new() -> Self {
-        let row = Row { colors: [Color::BLACK; TILE_WIDTH as usize], depths: [0.0; TILE_WIDTH as usize] };
-        let queue = Queue { count: 0, records: [f32x8::ZERO; LANES], places: [[0; 2]; LANES] };
+impl<'a> Tile<'a> {
+    /// No tile yet.
+    pub(super) fn new(band: Band<'a>) -> Self {
         Self {
+            band,
             rect: Rect::sized(0, 0),
-            behind: f64::INFINITY,
-            rows: [row; TILE_HEIGHT as usize],
-            queue,
+            behind: NOTHING_IS_HIDDEN,
+            queue: Queue { count: 0, records: [f32x8::ZERO; LANES], places: [0; LANES] },
             touches: [Touch::default(); GROUPS],
+            saved: (vec![], vec![]),
         }
     }
 
-    /// Fetches the pixels of a rectangle of a band.
-    pub(super) fn load(&mut self, rect: Rect, band: &Band<'_>) {
-        self.rect = rect;
-        for (row, place) in self.rows.iter_mut().zip(band.places(rect)) {
-            row.colors[..place.len()].copy_from_slice(&band.colors[place.clone()]);
-            row.depths[..place.len()].copy_from_slice(&band.depths[place]);
-        }
-    }
-
-    /// Brings the pixels back.
-    pub(super) fn store(&self, band: &mut Band<'_>) {
-        for (row, place) in self.rows.iter().zip(band.places(self.rect)) {
-            band.colors[place.clone()].copy_from_slice(&row.colors[..place.len()]);
-            band.depths[place.clone()].copy_from_slice(&row.depths[..place.len()]);
-        }
-    }
-
-    /// Draws triangles, one after the other, but for those that are known to be hidden.
-    pub(super) fn draw<'a, S: Shader<N>, I: Iterator<Item = Triangle<'a>>, const N: usize>(
+    /// Draws triangles into a rectangle, one after the other, but for those that are known to be hidden.
+    pub(super) fn draw<'t, S: Shader<N>, I: Iterator<Item = Triangle<'t>>, const N: usize>(
         &mut self,
         frame: &Frame<'_, S, N>,
+        rect: Rect,
         triangles: impl Fn() -> I,
     ) {
+        self.rect = rect;
         let may_hide = frame.front.has_large_triangles() && !frame.discards.load(Ordering::Relaxed);
-        self.behind = if may_hide { hidden_behind(frame, triangles(), self.rect) } else { f64::INFINITY };
-        for triangle in triangles() {
+        self.behind = if may_hide { hidden_behind(frame, triangles(), rect) } else { NOTHING_IS_HIDDEN };
+        if self.behind < NOTHING_IS_HIDDEN {
+            self.save(frame.state.load);
+        }
+        self.draw_all(frame, triangles());
+        if self.behind < NOTHING_IS_HIDDEN && frame.discards.load(Ordering::Relaxed) {
+            // What seemed to cover the tile may have holes: once more, with all triangles.
+            self.behind = NOTHING_IS_HIDDEN;
+            self.restore(frame.state);
+            self.draw_all(frame, triangles());
+        }
+    }
+
+    fn draw_all<'t, S: Shader<N>, const N: usize>(
+        &mut self,
+        frame: &Frame<'_, S, N>,
+        triangles: impl Iterator<Item = Triangle<'t>>,
+    ) {
+        for triangle in triangles {
             self.draw_triangle(frame, triangle);
         }
         self.flush(frame);
     }
 
-    /// Whether triangles were left out behind one whose fragments the shader may have thrown away.
-    pub(super) fn has_holes<S: Shader<N>, const N: usize>(&self, frame: &Frame<'_, S, N>) -> bool {
-        self.behind < f64::INFINITY && frame.discards.load(Ordering::Relaxed)
+    /// Keeps what is in the tile, if it cannot be cleared again.
+    fn save(&mut self, load: LoadOp) {
+        let (colors, depths) = &mut self.saved;
+        (colors.clear(), depths.clear());
+        if load == LoadOp::Load {
+            for place in self.band.places(self.rect) {
+                colors.extend_from_slice(&self.band.colors[place.clone()]);
+                depths.extend_from_slice(&self.band.depths[place]);
+            }
+        }
+    }
+
+    /// Brings back what was in the tile.
+    fn restore(&mut self, state: &RenderState) {
+        let width = self.rect.columns().len();
+        for (row, place) in self.band.places(self.rect).enumerate() {
+            let (colors, depths) = (&mut self.band.colors[place.clone()], &mut self.band.depths[place]);
+            match state.load {
+                LoadOp::Load => {
+                    colors.copy_from_slice(&self.saved.0[row * width..(row + 1) * width]);
+                    depths.copy_from_slice(&self.saved.1[row * width..(row + 1) * width]);
+                }
+                LoadOp::Clear => {
+                    colors.fill(state.clear_color);
+                    depths.fill(state.clear_depth as f32);
+                }
+            }
+        }
     }
 
     /// Draws a triangle as far as it lies in the tile.
@@ -142,11 +160,6 @@ impl Tile {
         }
     }
 
-    /// The row and the column of a pixel in the tile.
-    fn place(&self, x: i32, y: i32) -> [usize; 2] {
-        [(y - self.rect.bottom) as usize, (x - self.rect.left) as usize]
-    }
-
     // ANCHOR: small
     /// A few pixels: each covered one goes into the queue.
     fn draw_small<S: Shader<N>, const N: usize>(
@@ -158,7 +171,7 @@ impl Tile {
         let [first, second, third] = triangle.records.map(|record| record[0]);
         let (to_second, to_third) = (second - first, third - first);
         let setup = Narrow::new(triangle.places, [area.left, area.bottom]);
-        let [bottom, left] = self.place(area.left, area.bottom);
+        let (corner, width) = (self.band.place([area.left, area.bottom]), self.band.stride);
         let mut covered = setup.covered(area);
         while covered != 0 {
             let bit = covered.trailing_zeros();
@@ -166,7 +179,7 @@ impl Tile {
             let (row, column) = (bit / 8, bit % 8);
             let [second, third] = setup.weights(column as i32, row as i32);
             let record = first + to_second * f32x8::splat(second) + to_third * f32x8::splat(third);
-            self.enqueue(frame, record, [bottom + row as usize, left + column as usize]);
+            self.enqueue(frame, record, corner + row as usize * width + column as usize);
         }
     }
 
@@ -175,12 +188,11 @@ impl Tile {
         &mut self,
         frame: &Frame<'_, S, N>,
         record: f32x8,
-        place: [usize; 2],
+        place: usize,
     ) {
         // Stored depths only become harder to pass: what fails now fails later.
         let is_linear = frame.state.depth_encoding.is_linear_on_screen();
-        let [row, column] = place;
-        let stored = self.rows[row].depths[column];
+        let stored = self.band.depths[place];
         if is_linear && !frame.state.merge.depth_test.passes(record.as_array_ref()[1], stored) {
             return;
         }
@@ -222,9 +234,8 @@ impl Tile {
         let opaque = opaque(shaded.color).to_array();
         let channels = shaded.color.channels();
         for lane in (0..count).filter(|lane| kept >> lane & 1 == 1) {
-            let [row, column] = self.queue.places[lane];
-            let row = &mut self.rows[row];
-            let (color, depth) = (&mut row.colors[column], &mut row.depths[column]);
+            let place = self.queue.places[lane];
+            let (color, depth) = (&mut self.band.colors[place], &mut self.band.depths[place]);
             if !depth_test.passes(depths[lane], *depth) {
                 continue;
             }
@@ -248,16 +259,15 @@ impl Tile {
         area: Rect,
     ) {
         self.flush(frame);
-        let area = whole_groups(area, self.rect.left);
+        let area = whole_groups(area);
         let setup = Narrow::new(triangle.places, [area.left, area.bottom]);
-        let (rows, groups) = self.rows_and_groups(area);
-        let touched = setup.touched(rows.len(), groups.len(), &mut self.touches);
+        let touched = setup.touched(area.rows().len(), area.columns().len() / LANES, &mut self.touches);
         let brush = Brush::new(frame, triangle, setup.one_over_area);
-        let rows = &mut self.rows[rows];
+        let groups = self.band.groups_from([area.left, area.bottom]);
         if is_plain(frame.state) {
-            draw_touched::<true, S, N>(frame, &brush, &setup, touched, rows, groups.start);
+            draw_touched::<true, S, N>(frame, &brush, &setup, touched, groups);
         } else {
-            draw_touched::<false, S, N>(frame, &brush, &setup, touched, rows, groups.start);
+            draw_touched::<false, S, N>(frame, &brush, &setup, touched, groups);
         }
     }
 
@@ -269,11 +279,11 @@ impl Tile {
         area: Rect,
     ) {
         let setup = Setup::new(triangle.places);
-        if self.behind < f64::INFINITY && depth_range(&setup, triangle, area)[0] > self.behind {
+        if self.behind < NOTHING_IS_HIDDEN && depth_range(&setup, triangle, area)[0] > self.behind {
             return;
         }
         self.flush(frame);
-        let area = whole_groups(area, self.rect.left);
+        let area = whole_groups(area);
         if setup.misses(area) {
             // An edge has all of the tile on its wrong side.
         } else if !setup.is_split_exact(area) {
@@ -294,30 +304,22 @@ impl Tile {
         edges: E,
     ) {
         let brush = Brush::new(frame, triangle, setup.one_over_area);
-        let (rows, groups) = self.rows_and_groups(area);
-        let rows = &mut self.rows[rows];
+        let groups = self.band.groups_from([area.left, area.bottom]);
+        let size = [area.columns().len() / LANES, area.rows().len()];
         if is_plain(frame.state) {
-            draw_area::<true, S, E, N>(frame, &brush, &edges, rows, groups);
+            draw_area::<true, S, E, N>(frame, &brush, &edges, size, groups);
         } else {
-            draw_area::<false, S, E, N>(frame, &brush, &edges, rows, groups);
+            draw_area::<false, S, E, N>(frame, &brush, &edges, size, groups);
         }
-    }
-
-    /// Where in the tile an area of whole groups is.
-    fn rows_and_groups(&self, area: Rect) -> (Range<usize>, Range<usize>) {
-        let [bottom, left] = self.place(area.left, area.bottom);
-        let [top, right] = self.place(area.right, area.top);
-        (bottom..top, left / LANES..right / LANES)
     }
 }
 
 /// The area, as many columns wider as it takes to begin and to end with a group of eight.
 ///
 /// No triangle covers pixels outside its area: what is tested there is not covered, or else outside the picture.
-fn whole_groups(area: Rect, tile_left: i32) -> Rect {
+fn whole_groups(area: Rect) -> Rect {
     const SIDE: i32 = LANES as i32;
-    let (from, to) = (area.left - tile_left, area.right - tile_left);
-    Rect { left: tile_left + from / SIDE * SIDE, right: tile_left + (to + SIDE - 1) / SIDE * SIDE, ..area }
+    Rect { left: area.left / SIDE * SIDE, right: (area.right + SIDE - 1) / SIDE * SIDE, ..area }
 }
 
 /// Whether all options that matter for a pixel have their default values: the most common case, known at compile time.
@@ -346,18 +348,6 @@ impl<const N: usize> Brush<N> {
     }
 }
 
-impl Row {
-    /// Some of its groups of eight: colors and depths.
-    #[inline(always)]
-    fn groups(
-        &mut self,
-        groups: Range<usize>,
-    ) -> impl Iterator<Item = (&mut [Color; LANES], &mut [f32; LANES])> {
-        let colors = &mut self.colors.as_chunks_mut().0[groups.clone()];
-        colors.iter_mut().zip(&mut self.depths.as_chunks_mut().0[groups])
-    }
-}
-
 /// Draws the groups that a triangle touches.
 ///
 /// A function by itself, so that the compiler knows that nothing that is written here changes what is read.
@@ -367,15 +357,13 @@ fn draw_touched<const PLAIN: bool, S: Shader<N>, const N: usize>(
     brush: &Brush<N>,
     setup: &Narrow,
     touched: &[Touch],
-    rows: &mut [Row],
-    first: usize,
+    (stride, colors, depths): Groups<'_>,
 ) {
     let mut kept = LaneMask::all(true);
     for &touch in touched {
         let mask = LaneMask::of_bits(i32::from(touch.covered));
-        let (row, group) = (&mut rows[usize::from(touch.row)], first + usize::from(touch.group));
-        let colors = &mut row.colors.as_chunks_mut().0[group];
-        let depths = &mut row.depths.as_chunks_mut().0[group];
+        let place = usize::from(touch.row) * stride + usize::from(touch.group);
+        let (colors, depths) = (&mut colors[place], &mut depths[place]);
         let keep = draw_group::<PLAIN, S, N>(frame, brush, mask, setup.group(touch), colors, depths);
         kept = kept.and(keep);
     }
@@ -388,14 +376,14 @@ fn draw_area<const PLAIN: bool, S: Shader<N>, E: Edges, const N: usize>(
     frame: &Frame<'_, S, N>,
     brush: &Brush<N>,
     edges: &E,
-    rows: &mut [Row],
-    groups: Range<usize>,
+    [columns, rows]: [usize; 2],
+    (stride, colors, depths): Groups<'_>,
 ) {
     let mut kept = LaneMask::all(true);
     let mut first = edges.first();
-    for row in rows {
+    for (colors, depths) in colors.chunks_mut(stride).zip(depths.chunks_mut(stride)).take(rows) {
         let mut group = first;
-        for (colors, depths) in row.groups(groups.clone()) {
+        for (colors, depths) in colors.iter_mut().zip(depths).take(columns) {
             let mask = edges.covered(&group);
             if mask.bits() != 0 {
                 let values = E::values(&group);
