@@ -28,6 +28,7 @@ pub trait Real:
     + Mul<Output = Self>
     + Div<Output = Self>
     + Neg<Output = Self>
+    + From<f32>
 {
     /// Yes or no for each of the numbers.
     type Mask: Mask;

@@ -85,10 +85,13 @@ impl AddressMode {
 ///   0 └──────┴──────┘ u
 ///     0             1
 /// ```
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Texture {
     width: u32,
     height: u32,
+    /// Width and height once more, ready to be multiplied with.
+    columns: f32,
+    rows: f32,
     /// Shared, so that a copy of a texture costs nothing.
     texels: Arc<[Color]>,
 }
@@ -102,7 +105,7 @@ impl Texture {
     pub fn new(width: u32, height: u32, texels: Vec<Color>) -> Self {
         let count = width as usize * height as usize;
         assert!(count > 0 && texels.len() == count, "{width}×{height} texels, but {} given", texels.len());
-        Self { width, height, texels: texels.into() }
+        Self { width, height, columns: width as f32, rows: height as f32, texels: texels.into() }
     }
 
     /// The 2×2 texture that the book uses up to chapter 10 (Figure 3-10).
@@ -161,7 +164,7 @@ impl Texture {
 
     #[inline]
     fn size<R: Real>(&self) -> [R; 2] {
-        [self.width, self.height].map(|side| R::of(f64::from(side)))
+        [R::from(self.columns), R::from(self.rows)]
     }
 
     /// The channels of a texel, in 0..=255.

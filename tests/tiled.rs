@@ -203,7 +203,7 @@ proptest! {
 
     #[test]
     fn tiled_equals_exact(records in records(), state in state(), mode in mode(), is_filtered in any::<bool>(), is_sloped in any::<bool>(),
-        size in prop_oneof![(1_u32..200, 1_u32..120), Just((64, 32)), Just((65, 33)), Just((1, 1)), Just((300, 1))],
+        size in prop_oneof![(1_u32..200, 1_u32..120), ((1_u32..25).prop_map(|groups| 8 * groups), 1_u32..120), Just((64, 32)), Just((65, 33)), Just((1, 1)), Just((300, 1))],
     ) {
         let mesh = Mesh::unindexed(records).expect("whole triangles");
         let shader = busy(mode, is_filtered);
@@ -448,8 +448,33 @@ fn layers_in_any_order() {
         let depths: Vec<f64> = (0..1 + round % 12).map(|_| (next() * 8.0).floor() / 10.0 - 0.4).collect();
         let mesh = layers(&depths, &mut next);
         let state = RenderState { load: LoadOp::Clear, ..RenderState::default() };
-        compare(&mesh, &Counted::default(), &state, (333, 131));
-        compare(&mesh, &Counted { has_holes: true, ..Counted::default() }, &state, (333, 131));
+        // Rows of whole groups of eight, and others.
+        for size in [(328, 131), (333, 131)] {
+            compare(&mesh, &Counted::default(), &state, size);
+            compare(&mesh, &Counted { has_holes: true, ..Counted::default() }, &state, size);
+        }
+    }
+}
+
+#[test]
+fn layers_with_holes_on_what_was_there() {
+    let mut next = numbers(9);
+    for size in [(328, 131), (333, 131)].repeat(20) {
+        let below = layers(&[0.3, 0.1], &mut next);
+        let above = layers(&[0.2, 0.0, -0.2, 0.15], &mut next);
+        let cleared = RenderState { load: LoadOp::Clear, ..RenderState::default() };
+        let shader = Counted { has_holes: true, ..Counted::default() };
+        let both = |tiled: Option<&Tiled>| {
+            let mut target = Target::<f32>::sized(size.0, size.1);
+            for (mesh, state) in [(&below, &cleared), (&above, &RenderState::default())] {
+                match tiled {
+                    Some(tiled) => draw(mesh, &shader, state, tiled, &mut target, &Silent),
+                    None => draw(mesh, &shader, state, &Exact::<f32>::new(), &mut target, &Silent),
+                }
+            }
+            target
+        };
+        assert_same(&both(Some(&Tiled::new())), &both(None));
     }
 }
 

@@ -14,7 +14,7 @@ use crate::edge::gradients_between;
 use crate::interpolate::{Interpolation, Projected};
 use crate::lanes::{LANES, LaneMask, Lanes, is_greater, is_less_or_equal, packed};
 use crate::merge::{Blend, Merge};
-use crate::pipeline::{LoadOp, RenderState};
+use crate::pipeline::RenderState;
 use crate::real::{Mask, Real};
 use crate::shader::{Paint, Shaded, Shader};
 use crate::varyings::{CornerVaryings, TriangleVaryings, WeightGradients};
@@ -40,8 +40,6 @@ pub(super) struct Tile<'a> {
     queue: Queue,
     /// The groups that a triangle touches.
     touches: [Touch; GROUPS],
-    /// What was in the tile, in case that it must be drawn again.
-    saved: (Vec<Color>, Vec<f32>),
 }
 
 /// Fragments of small triangles that wait until there are eight of them.
@@ -74,7 +72,6 @@ impl<'a> Tile<'a> {
             behind: NOTHING_IS_HIDDEN,
             queue: Queue { count: 0, records: [f32x8::ZERO; LANES], places: [0; LANES] },
             touches: [Touch::default(); GROUPS],
-            saved: (vec![], vec![]),
         }
     }
 
@@ -88,14 +85,11 @@ impl<'a> Tile<'a> {
         self.rect = rect;
         let may_hide = frame.front.has_large_triangles() && !frame.discards.load(Ordering::Relaxed);
         self.behind = if may_hide { hidden_behind(frame, triangles(), rect) } else { NOTHING_IS_HIDDEN };
-        if self.behind < NOTHING_IS_HIDDEN {
-            self.save(frame.state.load);
-        }
         self.draw_all(frame, triangles());
         if self.behind < NOTHING_IS_HIDDEN && frame.discards.load(Ordering::Relaxed) {
-            // What seemed to cover the tile may have holes: once more, with all triangles.
+            // What seemed to cover the tile may have holes: once more, with all triangles. Where the nearest stays, and of
+            // equally near ones the last, drawing twice is drawing once.
             self.behind = NOTHING_IS_HIDDEN;
-            self.restore(frame.state);
             self.draw_all(frame, triangles());
         }
     }
@@ -109,36 +103,6 @@ impl<'a> Tile<'a> {
             self.draw_triangle(frame, triangle);
         }
         self.flush(frame);
-    }
-
-    /// Keeps what is in the tile, if it cannot be cleared again.
-    fn save(&mut self, load: LoadOp) {
-        let (colors, depths) = &mut self.saved;
-        (colors.clear(), depths.clear());
-        if load == LoadOp::Load {
-            for place in self.band.places(self.rect) {
-                colors.extend_from_slice(&self.band.colors[place.clone()]);
-                depths.extend_from_slice(&self.band.depths[place]);
-            }
-        }
-    }
-
-    /// Brings back what was in the tile.
-    fn restore(&mut self, state: &RenderState) {
-        let width = self.rect.columns().len();
-        for (row, place) in self.band.places(self.rect).enumerate() {
-            let (colors, depths) = (&mut self.band.colors[place.clone()], &mut self.band.depths[place]);
-            match state.load {
-                LoadOp::Load => {
-                    colors.copy_from_slice(&self.saved.0[row * width..(row + 1) * width]);
-                    depths.copy_from_slice(&self.saved.1[row * width..(row + 1) * width]);
-                }
-                LoadOp::Clear => {
-                    colors.fill(state.clear_color);
-                    depths.fill(state.clear_depth as f32);
-                }
-            }
-        }
     }
 
     /// Draws a triangle as far as it lies in the tile.
