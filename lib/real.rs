@@ -123,12 +123,13 @@ macro_rules! plain_number {
 
             #[inline]
             fn min(self, other: Self) -> Self {
-                Self::min(self, other)
+                // What the method of the same name does, but for a NaN on the other side: one instruction instead of four.
+                if self < other { self } else { other }
             }
 
             #[inline]
             fn max(self, other: Self) -> Self {
-                Self::max(self, other)
+                if self > other { self } else { other }
             }
 
             #[inline]
