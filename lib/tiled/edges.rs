@@ -136,22 +136,26 @@ impl Narrow {
         covered
     }
 
-    /// Which groups of eight are touched in an area of so many rows and groups: written to a list, from below.
+    /// Which groups of eight are touched in an area of so many groups and rows: written to a list, from below. From a group
+    /// to the one above it there are `stride`.
     pub(super) fn touched<'a>(
         &self,
-        rows: usize,
-        groups: usize,
+        [groups, rows]: [usize; 2],
+        stride: usize,
         list: &'a mut [Touch; GROUPS],
     ) -> &'a [Touch] {
         let right = self.right.map(|step| i32x8::splat(step * LANES as i32));
         let mut count = 0;
-        self.rows(rows, |row, mut values| {
+        self.rows(rows, |row, mut signs| {
+            let [mut second, mut third] = self.values(0, row as i32);
             for group in 0..groups {
-                let covered = covered_bits(values);
+                let covered = i32::from(covered_bits(signs));
                 // Always written, but counted only if there is something: no branch to be foreseen.
-                list[count % GROUPS] = Touch { row: row as u8, group: group as u8, covered };
+                list[count % GROUPS] = Touch { place: row * stride + group, covered, values: [second, third] };
                 count += usize::from(covered != 0);
-                values = from_fn(|i| values[i] + right[i]);
+                signs = from_fn(|i| signs[i] + right[i]);
+                second += self.right[1] * LANES as i32;
+                third += self.right[2] * LANES as i32;
             }
         });
         &list[..count]
@@ -171,9 +175,9 @@ impl Narrow {
 
     /// The values in a touched group, each rounded once.
     #[inline(always)]
-    pub(super) fn group(&self, touch: Touch) -> [Lanes; 2] {
+    pub(super) fn group(&self, touch: &Touch) -> [Lanes; 2] {
         let [_, second, third] = self.lanes();
-        let [to_second, to_third] = self.values(i32::from(touch.group) * LANES as i32, i32::from(touch.row));
+        let [to_second, to_third] = touch.values;
         [(i32x8::splat(to_second) + second).round_float(), (i32x8::splat(to_third) + third).round_float()]
     }
 }
@@ -188,10 +192,12 @@ fn covered_bits(values: [i32x8; 3]) -> u8 {
 /// A group of eight pixels of which a triangle covers some.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Touch {
-    pub(super) row: u8,
-    pub(super) group: u8,
-    /// A bit for each.
-    pub(super) covered: u8,
+    /// Where it is: how many groups after the first.
+    pub(super) place: usize,
+    /// A bit for each pixel.
+    pub(super) covered: i32,
+    /// The values that belong to the second and the third vertex at the first of the eight.
+    values: [i32; 2],
 }
 
 /// How many groups a tile has.

@@ -225,9 +225,9 @@ impl<'a> Tile<'a> {
         self.flush(frame);
         let area = whole_groups(area);
         let setup = Narrow::new(triangle.places, [area.left, area.bottom]);
-        let touched = setup.touched(area.rows().len(), area.columns().len() / LANES, &mut self.touches);
-        let brush = Brush::new(frame, triangle, setup.one_over_area);
         let groups = self.band.groups_from([area.left, area.bottom]);
+        let touched = setup.touched(size_in_groups(area), groups.0, &mut self.touches);
+        let brush = Brush::new(frame, triangle, setup.one_over_area);
         if is_plain(frame.state) {
             draw_touched::<true, S, N>(frame, &brush, &setup, touched, groups);
         } else {
@@ -269,7 +269,7 @@ impl<'a> Tile<'a> {
     ) {
         let brush = Brush::new(frame, triangle, setup.one_over_area);
         let groups = self.band.groups_from([area.left, area.bottom]);
-        let size = [area.columns().len() / LANES, area.rows().len()];
+        let size = size_in_groups(area);
         if is_plain(frame.state) {
             draw_area::<true, S, E, N>(frame, &brush, &edges, size, groups);
         } else {
@@ -284,6 +284,11 @@ impl<'a> Tile<'a> {
 fn whole_groups(area: Rect) -> Rect {
     const SIDE: i32 = LANES as i32;
     Rect { left: area.left / SIDE * SIDE, right: (area.right + SIDE - 1) / SIDE * SIDE, ..area }
+}
+
+/// How many groups wide and rows high an area of whole groups is.
+fn size_in_groups(area: Rect) -> [usize; 2] {
+    [area.columns().len() / LANES, area.rows().len()]
 }
 
 /// Whether all options that matter for a pixel have their default values: the most common case, known at compile time.
@@ -321,13 +326,12 @@ fn draw_touched<const PLAIN: bool, S: Shader<N>, const N: usize>(
     brush: &Brush<N>,
     setup: &Narrow,
     touched: &[Touch],
-    (stride, colors, depths): Groups<'_>,
+    (_, colors, depths): Groups<'_>,
 ) {
     let mut kept = LaneMask::all(true);
-    for &touch in touched {
-        let mask = LaneMask::of_bits(i32::from(touch.covered));
-        let place = usize::from(touch.row) * stride + usize::from(touch.group);
-        let (colors, depths) = (&mut colors[place], &mut depths[place]);
+    for touch in touched {
+        let mask = LaneMask::of_bits(touch.covered);
+        let (colors, depths) = (&mut colors[touch.place], &mut depths[touch.place]);
         let keep = draw_group::<PLAIN, S, N>(frame, brush, mask, setup.group(touch), colors, depths);
         kept = kept.and(keep);
     }
