@@ -125,13 +125,17 @@ impl Narrow {
         }
     }
 
-    /// Which pixels of an area of at most 8 × 8 are covered: a bit each, eight for a row.
+    /// Which pixels of an area of at most 8 × 8 are covered: a bit each, eight for a row. And how much the second and the
+    /// third vertex weigh, in each row that the area has.
     #[inline]
-    pub(super) fn covered(&self, area: Rect) -> u64 {
+    pub(super) fn covered(&self, area: Rect, weights: &mut [[Lanes; 2]; 8]) -> u64 {
         let columns = (1_u64 << area.columns().len()) - 1;
+        let (shy, one_over_area) = (self.shy.map(i32x8::splat), Lanes::splat(self.one_over_area));
         let mut covered = 0;
         self.rows(area.rows().len(), |row, values| {
             covered |= (u64::from(covered_bits(values)) & columns) << (8 * row);
+            weights[row % 8][0] = (values[1] + shy[1]).round_float() * one_over_area;
+            weights[row % 8][1] = (values[2] + shy[2]).round_float() * one_over_area;
         });
         covered
     }
@@ -165,12 +169,6 @@ impl Narrow {
     #[inline(always)]
     fn values(&self, column: i32, row: i32) -> [i32; 2] {
         [1, 2].map(|i| self.start[i] + self.right[i] * column + self.up[i] * row)
-    }
-
-    /// The weights of the second and the third vertex there.
-    #[inline]
-    pub(super) fn weights(&self, column: i32, row: i32) -> [f32; 2] {
-        self.values(column, row).map(|value| value as f32 * self.one_over_area)
     }
 
     /// The values in a touched group, each rounded once.

@@ -38,6 +38,8 @@ pub(super) struct Tile<'a> {
     /// Nothing that is deeper than this can be seen.
     behind: f64,
     queue: Queue,
+    /// How much the second and the third vertex of a small triangle weigh, row by row.
+    weights: [[Lanes; 2]; SMALL as usize],
     /// The groups that a triangle touches.
     touches: [Touch; GROUPS],
 }
@@ -71,6 +73,7 @@ impl<'a> Tile<'a> {
             rect: Rect::sized(0, 0),
             behind: NOTHING_IS_HIDDEN,
             queue: Queue { count: 0, records: [f32x8::ZERO; LANES], places: [0; LANES] },
+            weights: [[Lanes::ZERO; 2]; SMALL as usize],
             touches: [Touch::default(); GROUPS],
         }
     }
@@ -136,13 +139,13 @@ impl<'a> Tile<'a> {
         let (to_second, to_third) = (second - first, third - first);
         let setup = Narrow::new(triangle.places, [area.left, area.bottom]);
         let (corner, width) = (self.band.place([area.left, area.bottom]), self.band.stride);
-        let mut covered = setup.covered(area);
+        let mut covered = setup.covered(area, &mut self.weights);
         while covered != 0 {
             let bit = covered.trailing_zeros();
             covered &= covered - 1;
             let (row, column) = (bit / 8, bit % 8);
-            let [second, third] = setup.weights(column as i32, row as i32);
-            let record = first + to_second * f32x8::splat(second) + to_third * f32x8::splat(third);
+            let weight = |i: usize| f32x8::splat(self.weights[row as usize][i].as_array_ref()[column as usize]);
+            let record = first + to_second * weight(0) + to_third * weight(1);
             self.enqueue(frame, record, corner + row as usize * width + column as usize);
         }
     }
