@@ -349,6 +349,7 @@ impl Chunk {
 
     // ANCHOR: bin
     /// Puts a triangle into the bins of the tiles that its bounding box touches, if it is seen at all.
+    #[inline(always)]
     fn add(&mut self, number: u32, places: [Place; 3], context: &Context<'_>) {
         let area = signed_area(places);
         let winding = if area > 0 { Winding::CounterClockwise } else { Winding::Clockwise };
