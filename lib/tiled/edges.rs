@@ -155,7 +155,8 @@ impl Narrow {
             for group in 0..groups {
                 let covered = i32::from(covered_bits(signs));
                 // Always written, but counted only if there is something: no branch to be foreseen.
-                list[count % GROUPS] = Touch { place: row * stride + group, covered, values: [second, third] };
+                list[count % GROUPS] =
+                    Touch { place: row * stride + group, covered, values: [second, third] };
                 count += usize::from(covered != 0);
                 signs = from_fn(|i| signs[i] + right[i]);
                 second += self.right[1] * LANES as i32;

@@ -141,9 +141,6 @@ struct Band<'a> {
     depths: &'a mut [f32],
 }
 
-/// Groups of eight neighbors, row by row, and how many there are in a row.
-type Groups<'a> = (usize, &'a mut [[Color; LANES]], &'a mut [[f32; LANES]]);
-
 impl Band<'_> {
     /// Draws its tiles, from left to right.
     fn draw<S: Shader<N>, const N: usize>(self, frame: &Frame<'_, S, N>, row: usize) {
@@ -166,7 +163,29 @@ impl Band<'_> {
             }
         }
     }
+}
 
+/// Fills a plane with one value.
+///
+/// Block by block: for copies of some thousand bytes processors have instructions that need not fetch what they write
+/// over.
+fn fill<T: Copy>(plane: &mut [T], value: T) {
+    const BLOCK: usize = 4096;
+    let (first, rest) = plane.split_at_mut(BLOCK.min(plane.len()));
+    first.fill(value);
+    rest.chunks_mut(BLOCK).for_each(|block| block.copy_from_slice(&first[..block.len()]));
+}
+// ANCHOR_END: tiles
+
+/// The same pixels in groups of eight neighbors, row by row.
+struct Groups<'a> {
+    /// How many there are from one row to the next.
+    stride: usize,
+    colors: &'a mut [[Color; LANES]],
+    depths: &'a mut [[f32; LANES]],
+}
+
+impl Band<'_> {
     /// Lets a rectangle be drawn in a copy, in which all rows consist of whole groups.
     fn with_whole_groups(&mut self, rect: Rect, draw: impl FnOnce(Band<'_>)) {
         const SIZE: usize = (TILE_WIDTH * TILE_HEIGHT) as usize;
@@ -202,22 +221,13 @@ impl Band<'_> {
     /// The groups from one on, by its lower left pixel.
     fn groups_from(&mut self, corner: [i32; 2]) -> Groups<'_> {
         let first = self.place(corner);
-        let (colors, depths) = (&mut self.colors[first..], &mut self.depths[first..]);
-        (self.stride / LANES, colors.as_chunks_mut().0, depths.as_chunks_mut().0)
+        Groups {
+            stride: self.stride / LANES,
+            colors: self.colors[first..].as_chunks_mut().0,
+            depths: self.depths[first..].as_chunks_mut().0,
+        }
     }
 }
-
-/// Fills a plane with one value.
-///
-/// Block by block: for copies of some thousand bytes processors have instructions that need not fetch what they write
-/// over.
-fn fill<T: Copy>(plane: &mut [T], value: T) {
-    const BLOCK: usize = 4096;
-    let (first, rest) = plane.split_at_mut(BLOCK.min(plane.len()));
-    first.fill(value);
-    rest.chunks_mut(BLOCK).for_each(|block| block.copy_from_slice(&first[..block.len()]));
-}
-// ANCHOR_END: tiles
 
 impl Rasterizer for Tiled {
     type Depth = f32;

@@ -144,7 +144,8 @@ impl<'a> Tile<'a> {
             let bit = covered.trailing_zeros();
             covered &= covered - 1;
             let (row, column) = (bit / 8, bit % 8);
-            let weight = |i: usize| f32x8::splat(self.weights[row as usize][i].as_array_ref()[column as usize]);
+            let weight =
+                |i: usize| f32x8::splat(self.weights[row as usize][i].as_array_ref()[column as usize]);
             let record = first + to_second * weight(0) + to_third * weight(1);
             self.enqueue(frame, record, corner + row as usize * width + column as usize);
         }
@@ -229,7 +230,7 @@ impl<'a> Tile<'a> {
         let area = whole_groups(area);
         let setup = Narrow::new(triangle.places, [area.left, area.bottom]);
         let groups = self.band.groups_from([area.left, area.bottom]);
-        let touched = setup.touched(size_in_groups(area), groups.0, &mut self.touches);
+        let touched = setup.touched(size_in_groups(area), groups.stride, &mut self.touches);
         let brush = Brush::new(frame, triangle, setup.one_over_area);
         if is_plain(frame.state) {
             draw_touched::<true, S, N>(frame, &brush, &setup, touched, groups);
@@ -329,7 +330,7 @@ fn draw_touched<const PLAIN: bool, S: Shader<N>, const N: usize>(
     brush: &Brush<N>,
     setup: &Narrow,
     touched: &[Touch],
-    (_, colors, depths): Groups<'_>,
+    Groups { colors, depths, .. }: Groups<'_>,
 ) {
     let mut kept = LaneMask::all(true);
     for touch in touched {
@@ -348,7 +349,7 @@ fn draw_area<const PLAIN: bool, S: Shader<N>, E: Edges, const N: usize>(
     brush: &Brush<N>,
     edges: &E,
     [columns, rows]: [usize; 2],
-    (stride, colors, depths): Groups<'_>,
+    Groups { stride, colors, depths }: Groups<'_>,
 ) {
     let mut kept = LaneMask::all(true);
     let mut first = edges.first();
