@@ -149,9 +149,11 @@ impl Rect {
     #[must_use]
     #[inline]
     pub const fn index(self, x: i32, y: i32) -> Option<usize> {
-        if self.contains(x, y) {
-            let width = (self.right - self.left) as usize;
-            Some((y - self.bottom) as usize * width + (x - self.left) as usize)
+        // Seen as a number without a sign, what lies before the first column is far behind the last: one question a side.
+        let (column, row) = (x.wrapping_sub(self.left) as u32, y.wrapping_sub(self.bottom) as u32);
+        let (width, height) = (side(self.left, self.right), side(self.bottom, self.top));
+        if column < width && row < height {
+            Some(row as usize * width as usize + column as usize)
         } else {
             None
         }
@@ -168,6 +170,12 @@ impl Rect {
     pub const fn rows(self) -> Range<i32> {
         self.bottom..self.top
     }
+}
+
+/// How many whole numbers there are from one to another, the last not included; none if it is not greater.
+#[inline]
+const fn side(from: i32, to: i32) -> u32 {
+    if from < to { to.wrapping_sub(from) as u32 } else { 0 }
 }
 
 /// A plane of pixels. The origin is at the bottom left and y points up, as in the book's `SetPixel` (section 1.5).
@@ -324,6 +332,7 @@ impl fmt::Debug for Framebuffer {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
     #[test]
     fn a_pixel_is_where_it_was_set() {
@@ -333,6 +342,22 @@ mod tests {
         let rows: Vec<Vec<Color>> = framebuffer.rows_from_top().map(<[Color]>::to_vec).collect();
         assert_eq!(rows[0], [Color::GREEN, Color::BLACK, Color::BLACK], "y = 1 is the first row of a file");
         assert_eq!(rows[1], [Color::BLACK, Color::BLACK, Color::RED], "y = 0 is the last row of a file");
+    }
+
+    proptest! {
+        #[test]
+        fn what_a_rectangle_contains_has_a_place(
+            sides in prop::array::uniform4(prop_oneof![-9..9, any::<i32>(), Just(i32::MIN), Just(i32::MAX)]),
+            x in prop_oneof![-9..9, any::<i32>(), Just(i32::MIN), Just(i32::MAX)],
+            y in prop_oneof![-9..9, any::<i32>(), Just(i32::MIN), Just(i32::MAX)],
+        ) {
+            let [left, bottom, right, top] = sides;
+            let rect = Rect { left, bottom, right, top };
+            let [left, bottom, right, x, y] = [left, bottom, right, x, y].map(i128::from);
+            let place = (y - bottom) * (right - left) + (x - left);
+            let expected = rect.contains(x as i32, y as i32).then_some(place);
+            prop_assert_eq!(rect.index(x as i32, y as i32).map(|place| place as i128), expected);
+        }
     }
 
     #[test]
