@@ -294,13 +294,10 @@ impl Coverage {
         })
     }
 
-    /// The same for some columns of one row, from left to right. The covered ones lie side by side.
+    /// The same for some columns of one row, from left to right.
     #[inline]
     fn row(&self, columns: Range<i32>, y: i32) -> impl Iterator<Item = (i32, [i64; 3])> + use<> {
-        let values = self.edge_values(center(columns.start, y));
-        let [a, b, c] = from_fn(|i| self.edges[i].columns(columns.clone(), values[i]));
-        let covered = a.start.max(b.start).max(c.start)..a.end.min(b.end).min(c.end);
-
+        let covered = self.covered_columns(columns, y);
         let mut values = self.edge_values(center(covered.start, y));
         let steps = self.edges.map(|edge| edge.step_x * SUBPIXELS);
         covered.map(move |x| {
@@ -308,6 +305,33 @@ impl Coverage {
             values = from_fn(|i| here[i] + steps[i]);
             (x, here)
         })
+    }
+
+    /// The same with weights.
+    #[inline]
+    fn weights_in_row<R: Scalar>(
+        &self,
+        columns: Range<i32>,
+        y: i32,
+    ) -> impl Iterator<Item = (i32, [R; 2])> + use<R> {
+        let covered = self.covered_columns(columns, y);
+        // Whole numbers of up to 53 bits: all sums are exact in `f64`, too.
+        let [_, mut second, mut third] = self.edge_values(center(covered.start, y)).map(|value| value as f64);
+        let [_, to_second, to_third] = self.edges.map(|edge| (edge.step_x * SUBPIXELS) as f64);
+        let one_over_area = R::of(1.0) / R::of(self.twice_area as f64);
+        covered.map(move |x| {
+            let weights = [R::of(second) * one_over_area, R::of(third) * one_over_area];
+            (second, third) = (second + to_second, third + to_third);
+            (x, weights)
+        })
+    }
+
+    /// Which of some columns of a row are covered: they lie side by side.
+    #[inline]
+    fn covered_columns(&self, columns: Range<i32>, y: i32) -> Range<i32> {
+        let values = self.edge_values(center(columns.start, y));
+        let [a, b, c] = from_fn(|i| self.edges[i].columns(columns.clone(), values[i]));
+        a.start.max(b.start).max(c.start)..a.end.min(b.end).min(c.end)
     }
 }
 // ANCHOR_END: coverage
@@ -425,9 +449,8 @@ fn draw_triangle<R: Scalar, S: Shader<N>, P: Probe + ?Sized, const N: usize>(
     let area = coverage.bounding_box(window.rect);
     let _announced = Announced::new(window, &coverage);
     for y in area.rows() {
-        for (x, values) in coverage.row(area.columns(), y) {
+        for (x, weights) in coverage.weights_in_row(area.columns(), y) {
             // Interpolation.
-            let weights = coverage.weights(values);
             let point = varyings.at(weights);
             let depth =
                 if state.depth_encoding.is_linear_on_screen() { varyings.depth_at(weights) } else { point.w };
