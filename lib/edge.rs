@@ -294,7 +294,7 @@ impl Coverage {
         })
     }
 
-    /// The same for some columns of one row, from left to right.
+    /// The covered ones of some columns of a row, from left to right, with the values of the edge functions there.
     #[inline]
     fn row(&self, columns: Range<i32>, y: i32) -> impl Iterator<Item = (i32, [i64; 3])> + use<> {
         let covered = self.covered_columns(columns, y);
@@ -307,7 +307,7 @@ impl Coverage {
         })
     }
 
-    /// The same with weights.
+    /// The covered ones of some columns of a row, from left to right, with [`Self::weights`] there.
     #[inline]
     fn weights_in_row<R: Scalar>(
         &self,

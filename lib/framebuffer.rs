@@ -149,7 +149,7 @@ impl Rect {
     #[must_use]
     #[inline]
     pub const fn index(self, x: i32, y: i32) -> Option<usize> {
-        // Seen as a number without a sign, what lies before the first column is far behind the last: one question a side.
+        // As `u32`, a negative difference is greater than any width: one comparison for each axis.
         let (column, row) = (x.wrapping_sub(self.left) as u32, y.wrapping_sub(self.bottom) as u32);
         let (width, height) = (side(self.left, self.right), side(self.bottom, self.top));
         if column < width && row < height {
@@ -172,7 +172,7 @@ impl Rect {
     }
 }
 
-/// How many whole numbers there are from one to another, the last not included; none if it is not greater.
+/// The length of a side from `from` to `to`; 0 if it runs backwards.
 #[inline]
 const fn side(from: i32, to: i32) -> u32 {
     if from < to { to.wrapping_sub(from) as u32 } else { 0 }

@@ -54,8 +54,8 @@ use crate::{Color, Rect};
 
 /// What is in the target when drawing begins.
 ///
-/// A rasterizer that keeps a part of the picture near, as GPUs with tiles and [`tiled`](crate::tiled) do, need not fetch
-/// what is cleared anyway. Source: Vulkan specification, *Load operations*.
+/// A rasterizer that draws a part of the picture at a time, as GPUs with tiles and [`tiled`](crate::tiled) do, can clear
+/// it just before: then it need not be fetched from far away. Source: Vulkan specification, *Load operations*.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LoadOp {
     /// What has been drawn before.

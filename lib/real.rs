@@ -123,7 +123,7 @@ macro_rules! plain_number {
 
             #[inline]
             fn min(self, other: Self) -> Self {
-                // What the method of the same name does, but for a NaN on the other side: one instruction instead of four.
+                // As the method of the same name, but where `other` is NaN: one instruction instead of four.
                 if self < other { self } else { other }
             }
 

@@ -82,7 +82,7 @@ pub struct Shaded<R: Real> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Paint<R: Real> {
     /// Red, green and blue in 0..=255, and opacity in 0..=1.
-    Mixed([R; 4]),
+    Channels([R; 4]),
     /// A texel as it is stored. It can be written as it is: nothing is taken apart, rounded and put together again.
     Texel(R::Colors),
 }
@@ -93,7 +93,7 @@ impl<R: Real> Paint<R> {
     #[inline]
     pub fn channels(self) -> [R; 4] {
         match self {
-            Self::Mixed(channels) => channels,
+            Self::Channels(channels) => channels,
             Self::Texel(texel) => {
                 let [red, green, blue] = R::channels(texel);
                 [red, green, blue, R::of(1.0)]
@@ -114,7 +114,7 @@ impl<R: Real> Shaded<R> {
     #[must_use]
     #[inline]
     pub fn translucent([red, green, blue]: [R; 3], opacity: R) -> Self {
-        Self { color: Paint::Mixed([red, green, blue, opacity]), keep: R::Mask::all(true) }
+        Self { color: Paint::Channels([red, green, blue, opacity]), keep: R::Mask::all(true) }
     }
 
     /// A fragment that shows a texel, such as [`Texture::nearest_texel`](crate::texture::Texture::nearest_texel) gives,

@@ -89,7 +89,7 @@ impl AddressMode {
 pub struct Texture {
     width: u32,
     height: u32,
-    /// Width and height once more, ready to be multiplied with.
+    /// Width and height once more, converted once and not for each texel; exact, since neither is more than 2²⁴.
     columns: f32,
     rows: f32,
     /// Shared, so that a copy of a texture costs nothing.
@@ -100,10 +100,11 @@ impl Texture {
     /// A texture from its texels, the lowest row first, each from left to right.
     ///
     /// # Panics
-    /// If there are not `width` × `height` texels, or none.
+    /// If there are not `width` × `height` texels, or none, or if a side is longer than 2²⁴.
     #[must_use]
     pub fn new(width: u32, height: u32, texels: Vec<Color>) -> Self {
         let count = width as usize * height as usize;
+        assert!(width.max(height) <= 1 << 24, "no side of a texture has {} texels", width.max(height));
         assert!(count > 0 && texels.len() == count, "{width}×{height} texels, but {} given", texels.len());
         Self { width, height, columns: width as f32, rows: height as f32, texels: texels.into() }
     }

@@ -78,7 +78,7 @@ impl Shader<5> for Sloped {
         let steep = (change.dx[3] * R::of(40.0)).max(change.dy[4] * R::of(25.0));
         let Shaded { color, keep } = self.fragment(varyings);
         let [r, g, b, a] = color.channels();
-        Shaded { color: Paint::Mixed([r + steep, g, b - steep, a]), keep }
+        Shaded { color: Paint::Channels([r + steep, g, b - steep, a]), keep }
     }
 }
 

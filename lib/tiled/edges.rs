@@ -134,6 +134,7 @@ impl Narrow {
         let mut covered = 0;
         self.rows(area.rows().len(), |row, values| {
             covered |= (u64::from(covered_bits(values)) & columns) << (8 * row);
+            // What keeps ties out does not belong to the value. (The remainder is for the compiler.)
             weights[row % 8][0] = (values[1] + shy[1]).round_float() * one_over_area;
             weights[row % 8][1] = (values[2] + shy[2]).round_float() * one_over_area;
         });
@@ -156,7 +157,7 @@ impl Narrow {
                 let covered = i32::from(covered_bits(signs));
                 // Always written, but counted only if there is something: no branch to be foreseen.
                 list[count % GROUPS] =
-                    Touch { place: row * stride + group, covered, values: [second, third] };
+                    Touch { group: row * stride + group, covered, values: [second, third] };
                 count += usize::from(covered != 0);
                 signs = from_fn(|i| signs[i] + right[i]);
                 second += self.right[1] * LANES as i32;
@@ -192,7 +193,7 @@ fn covered_bits(values: [i32x8; 3]) -> u8 {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Touch {
     /// Where it is: how many groups after the first.
-    pub(super) place: usize,
+    pub(super) group: usize,
     /// A bit for each pixel.
     pub(super) covered: i32,
     /// The values that belong to the second and the third vertex at the first of the eight.

@@ -349,6 +349,8 @@ impl Chunk {
 
     // ANCHOR: bin
     /// Puts a triangle into the bins of the tiles that its bounding box touches, if it is seen at all.
+    ///
+    /// Inlined, so that the places stay in registers: what turns away costs little else.
     #[inline(always)]
     fn add(&mut self, number: u32, places: [Place; 3], context: &Context<'_>) {
         let area = signed_area(places);

@@ -4,9 +4,9 @@
 //! Five things make the difference, and each is a file: eight fragments are shaded at a time
 //! ([`lanes`](crate::lanes)); every vertex is made ready once, however many triangles share it, and triangles that turn
 //! away are gone before anything is reckoned for them (`front.rs`); triangles are sorted into *tiles*, rectangles of
-//! the picture that fit into the processor's nearest memory, so that no two threads ever write to the same place
-//! (`bins`, in `front.rs`); within a tile, triangles that cover only a few pixels share the eight lanes with others
-//! (`tile.rs`); and what is hidden in all of a tile is left out there (`occlusion.rs`).
+//! the picture that are small enough to stay near, and a row of tiles belongs to one thread (`bins`, in `front.rs`);
+//! within a tile, triangles that cover only a few pixels share the eight lanes with others (`tile.rs`); and what is
+//! hidden in all of a tile is left out there (`occlusion.rs`).
 //!
 //! ```text
 //!   vertices ──► shaded, divided, ──► triangles: culled, ──► bins: for each tile, ──► tiles: coverage, depth,
@@ -132,7 +132,7 @@ fn draw_tiles<S: Shader<N>, const N: usize>(frame: &Frame<'_, S, N>, window: Rec
     });
 }
 
-/// The rows of a picture in which a row of tiles lies, or a part of them.
+/// The rows of a picture in which a row of tiles lies, or a copy of one tile.
 struct Band<'a> {
     rect: Rect,
     /// How many pixels there are from one row to the next.
@@ -159,6 +159,7 @@ impl Band<'_> {
             } else if tile.band.stride.is_multiple_of(LANES) {
                 tile.draw(frame, rect, triangles);
             } else {
+                // A tile by itself, since it is drawn elsewhere.
                 tile.band.with_whole_groups(rect, |band| Tile::new(band).draw(frame, rect, triangles));
             }
         }

@@ -26,7 +26,7 @@ pub(super) struct Frame<'a, S: Shader<N>, const N: usize> {
     pub(super) state: &'a RenderState,
     pub(super) front: &'a Front,
     pub(super) source: &'a Source<'a, S, N>,
-    /// Whether the shader has been seen to throw fragments away.
+    /// Whether the shader has been seen to throw fragments of larger triangles away: only these can hide others.
     pub(super) discards: AtomicBool,
 }
 
@@ -53,11 +53,11 @@ struct Queue {
     places: [usize; LANES],
 }
 
-/// Up to this many pixels wide and high, a triangle is small.
+/// Up to this many pixels wide and high, a triangle is small: its coverage fits into 64 bits.
 const SMALL: i32 = 8;
 
 impl<S: Shader<N>, const N: usize> Frame<'_, S, N> {
-    /// Notes which fragments the shader has kept.
+    /// Notes whether the shader has thrown away any.
     fn note(&self, kept: LaneMask) {
         if kept.bits() != LaneMask::all(true).bits() {
             self.discards.store(true, Ordering::Relaxed);
@@ -335,7 +335,7 @@ fn draw_touched<const PLAIN: bool, S: Shader<N>, const N: usize>(
     let mut kept = LaneMask::all(true);
     for touch in touched {
         let mask = LaneMask::of_bits(touch.covered);
-        let (colors, depths) = (&mut colors[touch.place], &mut depths[touch.place]);
+        let (colors, depths) = (&mut colors[touch.group], &mut depths[touch.group]);
         let keep = draw_group::<PLAIN, S, N>(frame, brush, mask, setup.group(touch), colors, depths);
         kept = kept.and(keep);
     }
@@ -441,7 +441,7 @@ fn passes(test: DepthTest, depth: Lanes, stored: Lanes) -> LaneMask {
 fn opaque(color: Paint<Lanes>) -> i32x8 {
     match color {
         Paint::Texel(texels) => texels,
-        Paint::Mixed([red, green, blue, _]) => packed([red, green, blue]),
+        Paint::Channels([red, green, blue, _]) => packed([red, green, blue]),
     }
 }
 
