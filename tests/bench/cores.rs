@@ -7,10 +7,13 @@
 pub(crate) fn keep_on_core(thread: i32, core: usize) {
     use nix::sched::{CpuSet, sched_setaffinity};
     use nix::unistd::Pid;
+    use std::sync::LazyLock;
 
-    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    // Asked once: a thread that is kept on one core already is told that there is no other.
+    static CORES: LazyLock<usize> =
+        LazyLock::new(|| std::thread::available_parallelism().map_or(1, usize::from));
     let mut set = CpuSet::new();
-    if set.set(core % cores).is_ok() {
+    if set.set(core % *CORES).is_ok() {
         // Without it threads are measured as the system places them.
         let _ = sched_setaffinity(Pid::from_raw(thread), &set);
     }

@@ -43,7 +43,6 @@ impl Contestant {
             .args([CHILD, peer.name, &threads.to_string(), scene])
             .env("GALLIUM_DRIVER", "llvmpipe")
             .env("LP_NUM_THREADS", llvmpipe_threads.to_string())
-            .env("RAYON_NUM_THREADS", threads.to_string())
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .spawn()?;
@@ -99,6 +98,8 @@ impl Drop for Contestant {
 
 /// What a child does: it makes the scene ready, warms up, and carries out orders until there are no more.
 pub(crate) fn serve(renderer: &str, threads: usize, scene: &str) -> Result<(), Box<dyn Error>> {
+    // The thread that asks for a picture draws as well, as llvmpipe's does: nobody has to be woken first.
+    rayon::ThreadPoolBuilder::new().num_threads(threads).use_current_thread().build_global()?;
     let mut answers = stdout().lock();
     let prepared = Scene::named(scene).ok_or("no such scene".to_owned()).and_then(|s| prepare(renderer, s));
     let mut frame = match prepared {
