@@ -14,6 +14,7 @@
 //! ```
 
 use crate::interpolate::{Interpolation, Projected, step_parameter_and_depth};
+use crate::plane::Plane;
 use crate::probe::Listener;
 use crate::real::Scalar;
 use crate::scanline::{Corner, Walk};
@@ -116,14 +117,14 @@ pub fn w_from_z(z: f64, near: f64, far: f64) -> f64 {
 #[derive(Clone, Debug)]
 pub struct DepthBuffer<D = f64> {
     rect: Rect,
-    values: Vec<D>,
+    values: Plane<D>,
     listener: Option<Listener>,
 }
 
 /// Two buffers are equal if they hold the same depths, whoever listens.
 impl<D: PartialEq> PartialEq for DepthBuffer<D> {
     fn eq(&self, other: &Self) -> bool {
-        self.rect == other.rect && self.values == other.values
+        self.rect == other.rect && *self.values == *other.values
     }
 }
 
@@ -132,7 +133,7 @@ impl<D: Scalar> DepthBuffer<D> {
     #[must_use]
     pub fn new(width: u32, height: u32) -> Self {
         let values = vec![D::of(0.0); width as usize * height as usize];
-        Self { rect: Rect::sized(width, height), values, listener: None }
+        Self { rect: Rect::sized(width, height), values: values.into(), listener: None }
     }
 
     /// Gives all pixels the same depth.
@@ -147,9 +148,9 @@ impl<D: Scalar> DepthBuffer<D> {
         self.rect.index(x, y).map(|index| self.values[index])
     }
 
-    /// All depths in memory order, for who writes many at a time; nobody is told of that.
+    /// The plane itself, for who writes many depths at a time; nobody is told of that.
     #[cfg(feature = "tiled")]
-    pub(crate) fn values_mut(&mut self) -> &mut [D] {
+    pub(crate) const fn plane_mut(&mut self) -> &mut Plane<D> {
         &mut self.values
     }
 
@@ -200,8 +201,12 @@ impl<D: Scalar> Target<D> {
     /// The same picture and the same depths, these in another precision.
     #[must_use]
     pub fn with_depths_of<E: Scalar>(&self) -> Target<E> {
-        let values = self.depth.values.iter().map(|&depth| E::of(depth.into())).collect();
-        let depth = DepthBuffer { rect: self.depth.rect, values, listener: self.depth.listener.clone() };
+        let values: Vec<E> = self.depth.values.iter().map(|&depth| E::of(depth.into())).collect();
+        let depth = DepthBuffer {
+            rect: self.depth.rect,
+            values: values.into(),
+            listener: self.depth.listener.clone(),
+        };
         Target { color: self.color.clone(), depth }
     }
 }

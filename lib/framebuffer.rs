@@ -14,6 +14,7 @@
 use std::fmt;
 use std::ops::Range;
 
+use crate::plane::Plane;
 use crate::probe::{Listener, Probe, Window};
 use crate::real::Scalar;
 
@@ -193,14 +194,14 @@ const fn side(from: i32, to: i32) -> u32 {
 pub struct Framebuffer {
     width: u32,
     height: u32,
-    pixels: Vec<Color>,
+    pixels: Plane<Color>,
     listener: Option<Listener>,
 }
 
 /// Two framebuffers are equal if they show the same picture, whoever listens.
 impl PartialEq for Framebuffer {
     fn eq(&self, other: &Self) -> bool {
-        self.rect() == other.rect() && self.pixels == other.pixels
+        self.rect() == other.rect() && *self.pixels == *other.pixels
     }
 }
 
@@ -222,7 +223,7 @@ impl Framebuffer {
             "no framebuffer has {width}×{height} pixels"
         );
         let pixels = vec![Color::BLACK; width as usize * height as usize];
-        Self { width, height, pixels, listener: None }
+        Self { width, height, pixels: pixels.into(), listener: None }
     }
 
     /// The number of columns.
@@ -304,9 +305,9 @@ impl Framebuffer {
         }
     }
 
-    /// All pixels in memory order, for who writes many at a time; nobody is told of that.
+    /// The plane itself, for who writes many pixels at a time; nobody is told of that.
     #[cfg(feature = "tiled")]
-    pub(crate) fn pixels_mut(&mut self) -> &mut [Color] {
+    pub(crate) const fn plane_mut(&mut self) -> &mut Plane<Color> {
         &mut self.pixels
     }
 

@@ -53,6 +53,7 @@
 // The order of the modules is the order of the book; rustfmt would sort them by name.
 #![cfg_attr(rustfmt, rustfmt_skip)]
 
+mod plane;
 pub mod framebuffer;
 pub mod line;
 pub mod area;

@@ -7,7 +7,7 @@ use glam::DVec4;
 use rayon::prelude::*;
 use wide::{CmpGe, f32x8, f64x4};
 
-use super::{TILE_HEIGHT, TILE_WIDTH};
+use super::{TILE_HEIGHT, TILE_WIDTH, tiles_of};
 use crate::Rect;
 use crate::area::Winding;
 use crate::clip::{ClipTest, ClipVertex, NdcVertex, Plane, clip_triangle, fan};
@@ -69,7 +69,6 @@ pub(super) struct Front {
     vertices: Vertices,
     chunks: Vec<Chunk>,
     blocks: usize,
-    columns: usize,
 }
 
 /// A triangle as a tile needs it.
@@ -100,8 +99,7 @@ impl Front {
         state: &RenderState,
         window: Rect,
     ) {
-        let tiles = |pixels: i32, side: i32| (pixels as usize).div_ceil(side as usize);
-        let (columns, rows) = (tiles(window.right, TILE_WIDTH), tiles(window.top, TILE_HEIGHT));
+        let [columns, rows] = tiles_of(window);
         let planes = state.clip_volume.planes(state.depth_range);
         let context = Context {
             state,
@@ -113,7 +111,7 @@ impl Front {
             columns,
             tiles: columns * rows,
         };
-        (self.blocks, self.columns) = (context.blocks, columns);
+        self.blocks = context.blocks;
         match source {
             Source::Mesh(mesh) => {
                 self.vertices.shade(mesh, shader, &context);
@@ -156,17 +154,16 @@ impl Front {
     }
 
     /// Whether no triangle touches a tile.
-    pub(super) fn is_empty(&self, [column, row]: [usize; 2]) -> bool {
-        self.chunks.iter().all(|chunk| chunk.bins[row * self.columns + column].is_empty())
+    pub(super) fn is_empty(&self, tile: usize) -> bool {
+        self.chunks.iter().all(|chunk| chunk.bins[tile].is_empty())
     }
 
     /// The triangles that may touch a tile, in order.
     pub(super) fn triangles_in<'a, S: Shader<N>, const N: usize>(
         &'a self,
         source: &'a Source<'_, S, N>,
-        [column, row]: [usize; 2],
+        tile: usize,
     ) -> impl Iterator<Item = Triangle<'a>> {
-        let tile = row * self.columns + column;
         self.chunks.iter().flat_map(move |chunk| {
             chunk.bins[tile].iter().map(move |&number| match source {
                 Source::Mesh(mesh) if number & EXTRA == 0 => {

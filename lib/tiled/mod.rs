@@ -15,7 +15,9 @@
 //! ```
 //!
 //! Within a tile triangles keep their order: the picture does not depend on the number of threads, which is that of the
-//! `rayon` pool in which it is called.
+//! `rayon` pool in which it is called. Who draws many pictures from a thread outside of the pool pays for each that a
+//! thread must be woken: a tenth of the time of a small picture. `ThreadPool::install` around the loop spares it, or
+//! `ThreadPoolBuilder::use_current_thread`.
 //!
 //! ```
 //! use glam::{DVec4, dvec4};
@@ -53,6 +55,7 @@
 //! S. Laine and T. Karras, High-performance software rasterization on GPUs, 2011; N. Greene, M. Kass and G. Miller,
 //! Hierarchical Z-buffer visibility, 1993.
 
+mod background;
 mod edges;
 mod front;
 mod occlusion;
@@ -74,6 +77,7 @@ use crate::raster::Rasterizer;
 use crate::shader::Shader;
 use crate::{Color, Rect};
 
+use background::Background;
 use front::{Front, Source};
 use tile::{Frame, Tile};
 
@@ -118,18 +122,31 @@ impl Tiled {
     }
 }
 
+/// How many columns and rows of tiles a picture has.
+fn tiles_of(window: Rect) -> [usize; 2] {
+    [(window.right, TILE_WIDTH), (window.top, TILE_HEIGHT)]
+        .map(|(pixels, side)| (pixels as usize).div_ceil(side as usize))
+}
+
 // ANCHOR: tiles
 /// Draws all tiles; a row of tiles is a part of the picture that belongs to one thread alone.
 fn draw_tiles<S: Shader<N>, const N: usize>(frame: &Frame<'_, S, N>, window: Rect, target: &mut Target<f32>) {
-    let width = window.right as usize;
+    let (width, [columns, rows]) = (window.right as usize, tiles_of(window));
+    let (colors, depths) = (target.color.plane_mut(), target.depth.plane_mut());
+    let background = Background::take(frame.state, colors, depths);
     let pixels = width * TILE_HEIGHT as usize;
-    let (colors, depths) = (target.color.pixels_mut(), target.depth.values_mut());
     let bands = colors.par_chunks_mut(pixels).zip(depths.par_chunks_mut(pixels)).enumerate();
     bands.for_each(|(row, (colors, depths))| {
         let bottom = row as i32 * TILE_HEIGHT;
         let rect = Rect { bottom, top: (bottom + TILE_HEIGHT).min(window.top), ..window };
-        Band { rect, stride: width, colors, depths }.draw(frame, row);
+        let (mut band, first) = (Band { rect, stride: width, colors, depths }, row * columns);
+        if frame.state.load == LoadOp::Clear {
+            // Here and not before: what was just written is still near when the tiles come.
+            background.clear(&mut band, first);
+        }
+        band.draw(frame, first);
     });
+    background.put_back(colors, depths, columns * rows, |tile| frame.front.is_empty(tile));
 }
 
 /// The rows of a picture in which a row of tiles lies, or a copy of one tile.
@@ -142,19 +159,21 @@ struct Band<'a> {
 }
 
 impl Band<'_> {
-    /// Draws its tiles, from left to right.
-    fn draw<S: Shader<N>, const N: usize>(self, frame: &Frame<'_, S, N>, row: usize) {
-        if frame.state.load == LoadOp::Clear {
-            // Here and not before: what was just written is still near when the tiles come.
-            fill(self.colors, frame.state.clear_color);
-            fill(self.depths, frame.state.clear_depth as f32);
-        }
+    /// Its tiles from left to right, numbered from `first` on.
+    fn tiles(&self, first: usize) -> impl Iterator<Item = (usize, Rect)> + use<> {
         let band = self.rect;
+        let lefts = band.columns().step_by(TILE_WIDTH as usize);
+        let rects = lefts.map(move |left| Rect { left, right: (left + TILE_WIDTH).min(band.right), ..band });
+        (first..).zip(rects)
+    }
+
+    /// Draws its tiles.
+    fn draw<S: Shader<N>, const N: usize>(self, frame: &Frame<'_, S, N>, first: usize) {
+        let tiles = self.tiles(first);
         let mut tile = Tile::new(self);
-        for (column, left) in band.columns().step_by(TILE_WIDTH as usize).enumerate() {
-            let rect = Rect { left, right: (left + TILE_WIDTH).min(band.right), ..band };
-            let triangles = || frame.front.triangles_in(frame.source, [column, row]);
-            if frame.front.is_empty([column, row]) {
+        for (number, rect) in tiles {
+            let triangles = || frame.front.triangles_in(frame.source, number);
+            if frame.front.is_empty(number) {
                 // Nothing to do.
             } else if tile.band.stride.is_multiple_of(LANES) {
                 tile.draw(frame, rect, triangles);
@@ -166,16 +185,6 @@ impl Band<'_> {
     }
 }
 
-/// Fills a plane with one value.
-///
-/// Block by block: for copies of some thousand bytes processors have instructions that need not fetch what they write
-/// over.
-fn fill<T: Copy>(plane: &mut [T], value: T) {
-    const BLOCK: usize = 4096;
-    let (first, rest) = plane.split_at_mut(BLOCK.min(plane.len()));
-    first.fill(value);
-    rest.chunks_mut(BLOCK).for_each(|block| block.copy_from_slice(&first[..block.len()]));
-}
 // ANCHOR_END: tiles
 
 /// The same pixels in groups of eight neighbors, row by row.

@@ -1,0 +1,90 @@
+//! The background: what stands where nothing is drawn. Where it stands already it is not written again.
+
+use super::Band;
+use crate::pipeline::{LoadOp, RenderState};
+use crate::plane::{Blank, Plane};
+use crate::{Color, Rect};
+
+// ANCHOR: background
+/// The background of a picture, and where it was before this one was begun.
+pub(super) struct Background {
+    load: LoadOp,
+    color: Color,
+    depth: f32,
+    /// Which tiles hold nothing else, of the colors and of the depths.
+    blank: [Blank; 2],
+}
+
+impl Background {
+    /// The background of a state. What is known of the planes is taken from them: they will be drawn on.
+    pub(super) fn take(state: &RenderState, colors: &mut Plane<Color>, depths: &mut Plane<f32>) -> Self {
+        let blank = [colors.take_blank(), depths.take_blank()];
+        Self { load: state.load, color: state.clear_color, depth: state.clear_depth as f32, blank }
+    }
+
+    /// The bits of color and depth.
+    fn bits(&self) -> [u32; 2] {
+        [self.color.bits(), self.depth.to_bits()]
+    }
+
+    /// Clears the tiles of a band, which are numbered from `first` on, but for those that are blank. Tiles that stand side
+    /// by side are cleared together.
+    pub(super) fn clear(&self, band: &mut Band<'_>, first: usize) {
+        let is_blank = |tile| self.blank.iter().zip(self.bits()).all(|(blank, bits)| blank.holds(tile, bits));
+        let mut run: Option<Rect> = None;
+        for (tile, rect) in band.tiles(first) {
+            if !is_blank(tile) {
+                run = Some(Rect { left: run.map_or(rect.left, |run| run.left), ..rect });
+            } else if let Some(run) = run.take() {
+                self.fill(band, run);
+            }
+        }
+        if let Some(run) = run {
+            self.fill(band, run);
+        }
+    }
+
+    fn fill(&self, band: &mut Band<'_>, rect: Rect) {
+        if rect == band.rect {
+            fill(band.colors, self.color);
+            fill(band.depths, self.depth);
+        } else {
+            for place in band.places(rect) {
+                band.colors[place.clone()].fill(self.color);
+                band.depths[place].fill(self.depth);
+            }
+        }
+    }
+
+    /// Gives the planes back what is known of them, now that tiles that are not empty have been drawn.
+    pub(super) fn put_back(
+        mut self,
+        colors: &mut Plane<Color>,
+        depths: &mut Plane<f32>,
+        tiles: usize,
+        is_empty: impl Fn(usize) -> bool,
+    ) {
+        let bits = self.bits();
+        for (blank, bits) in self.blank.iter_mut().zip(bits) {
+            match self.load {
+                LoadOp::Clear => blank.cleared(bits, tiles, &is_empty),
+                LoadOp::Load => blank.drawn(&is_empty),
+            }
+        }
+        let [of_colors, of_depths] = self.blank;
+        colors.set_blank(of_colors);
+        depths.set_blank(of_depths);
+    }
+}
+// ANCHOR_END: background
+
+/// Fills a plane with one value.
+///
+/// Block by block: for copies of some thousand bytes processors have instructions that need not fetch what they write
+/// over.
+fn fill<T: Copy>(plane: &mut [T], value: T) {
+    const BLOCK: usize = 4096;
+    let (first, rest) = plane.split_at_mut(BLOCK.min(plane.len()));
+    first.fill(value);
+    rest.chunks_mut(BLOCK).for_each(|block| block.copy_from_slice(&first[..block.len()]));
+}
