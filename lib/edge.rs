@@ -1,33 +1,12 @@
-//! Beyond the book: the exact rasterizer. Which pixels a triangle covers is decided with whole numbers, and neighbors
-//! that share an edge cover every pixel along it exactly once.
+//! Beyond the book: edge functions. Which pixels a triangle covers is decided with whole numbers, and neighbors that
+//! share an edge cover every pixel along it exactly once.
 //!
-//! Takes triangles in NDC, as the scanline rasterizer does, and stands behind the same door. A pixel is a square with
-//! its sample in the middle; three *edge functions* say on which side of each edge the sample lies.
+//! Takes triangles on the screen; gives the pixels that they cover, and how much each corner weighs there. A pixel is a
+//! square with its sample in the middle; three *edge functions* say on which side of each edge the sample lies. The
+//! [exact rasterizer](crate::exact) and the fast one stand on it.
 //!
-//! # Contract
-//!
-//! **Which pixels.** The viewport maps NDC −1..1 to 0..width and 0..height, y up; the pixel (i, j) is sampled at its
-//! center (i + ½, j + ½). After clipping and the viewport, and before culling, x and y of each vertex are rounded to the
-//! nearest multiple of 1/256, halves away from zero. All decisions are made on these whole numbers, in 64-bit integers,
-//! which cannot overflow. The facing of a triangle is the sign of its area there; one without area is not drawn. A
-//! sample inside is covered; one on an edge is covered if the edge is a *top* edge (level, the triangle below it) or a
-//! *left* edge (not level, the triangle on its right), as seen on the screen; one on two edges, if both are.
-//!
-//! **Which values.** Weights are E · (1 / sum of the three E), E the exact values of the edge functions at the center,
-//! converted, divided and multiplied with one rounding each. 1/ω, V/ω and the depth are interpolated by these weights, and V = (V/ω) · 1/(1/ω). The
-//! depth is linear on the screen. All arithmetic is that of the number type: four operations, one rounding each.
-//!
-//! **Which rounding.** Channels are rounded to the nearest of 0..=255, halves upwards; NaN gives 0.
-//!
-//! Triangles that share an edge, with the same two vertices, leave no hole along it and draw nothing twice. Where a
-//! vertex of one lies in the middle of an edge of another (a T-junction), rounding may move it off that edge.
-//!
-//! Vertices outside twice the width and height of the view, and behind the eye, are clipped away before they are
-//! rounded (a *guard band*); a triangle that is still farther than 2¹⁶ pixels from the origin is not drawn.
-//!
-//! Sources: Direct3D 11.3 functional specification, 3.2.3.6 (colors), 3.3 (pixel centers), 3.4.1 (snapping), 3.4.2.1
-//! (top-left rule), 15.11.1 (facing); Vulkan specification, *Basic polygon rasterization* (values by weights); OpenGL
-//! 4.6, 14.6.1, asks only that one of two triangles sharing an edge covers a sample, which follows.
+//! Sources: Direct3D 11.3 functional specification, 3.3 (pixel centers), 3.4.1 (snapping), 3.4.2.1 (top-left rule); J.
+//! Pineda, A parallel algorithm for polygon rasterization, 1988.
 //!
 //! ```
 //! use glam::dvec2;
@@ -44,25 +23,15 @@
 //! ```
 
 use std::array::from_fn;
-use std::fmt::Debug;
-use std::marker::PhantomData;
 use std::ops::Range;
 
-use arrayvec::ArrayVec;
-use glam::{DVec2, dvec2, dvec4};
+use glam::{DVec2, dvec2};
 
 use crate::Rect;
 use crate::area::Winding;
-use crate::clip::{ClipTest, ClipVertex, NdcVertex, Plane, Polygon, clip_triangle, fan};
-use crate::depth::Target;
-use crate::framebuffer::Rounding;
-use crate::merge::merge;
-use crate::pipeline::RenderState;
-use crate::probe::{FragmentEvent, Probe, Vertex, Window};
-use crate::raster::Rasterizer;
+use crate::probe::Window;
 use crate::real::{Real, Scalar};
-use crate::shader::{Shaded, Shader};
-use crate::varyings::{TriangleVaryings, WeightGradients, weight_gradients};
+use crate::varyings::{WeightGradients, weight_gradients};
 
 /// The parts of a pixel into which positions are rounded, along x and along y.
 pub const SUBPIXELS: i64 = 256;
@@ -241,9 +210,15 @@ impl Coverage {
     #[must_use]
     #[inline]
     pub fn weights<R: Scalar>(&self, [_, second, third]: [i64; 3]) -> [R; 2] {
-        // Whole numbers of up to 53 bits are exact in f64; `of` rounds once.
+        [second, third].map(|value| value as f64).map(self.weight())
+    }
+
+    /// The value of an edge function → the weight of the vertex opposite to it. Whole numbers of up to 53 bits are exact
+    /// in `f64`; `of` rounds once.
+    #[inline]
+    fn weight<R: Scalar>(&self) -> impl Fn(f64) -> R + use<R> {
         let one_over_area = R::of(1.0) / R::of(self.twice_area as f64);
-        [R::of(second as f64) * one_over_area, R::of(third as f64) * one_over_area]
+        move |value| R::of(value) * one_over_area
     }
 
     /// The area with the sign of the winding, doubled, in square pixels.
@@ -309,7 +284,7 @@ impl Coverage {
 
     /// The covered ones of some columns of a row, from left to right, with [`Self::weights`] there.
     #[inline]
-    fn weights_in_row<R: Scalar>(
+    pub(crate) fn weights_in_row<R: Scalar>(
         &self,
         columns: Range<i32>,
         y: i32,
@@ -318,9 +293,9 @@ impl Coverage {
         // Whole numbers of up to 53 bits: all sums are exact in `f64`, too.
         let [_, mut second, mut third] = self.edge_values(center(covered.start, y)).map(|value| value as f64);
         let [_, to_second, to_third] = self.edges.map(|edge| (edge.step_x * SUBPIXELS) as f64);
-        let one_over_area = R::of(1.0) / R::of(self.twice_area as f64);
+        let weight = self.weight();
         covered.map(move |x| {
-            let weights = [R::of(second) * one_over_area, R::of(third) * one_over_area];
+            let weights = [weight(second), weight(third)];
             (second, third) = (second + to_second, third + to_third);
             (x, weights)
         })
@@ -337,14 +312,14 @@ impl Coverage {
 // ANCHOR_END: coverage
 
 /// Tells a window's listener of a triangle, and that it is done as soon as this goes out of scope.
-struct Announced {
+pub(crate) struct Announced {
     window: Window,
     coverage: Coverage,
 }
 
 impl Announced {
     #[inline]
-    fn new(window: Window, coverage: &Coverage) -> Self {
+    pub(crate) fn new(window: Window, coverage: &Coverage) -> Self {
         let announced = Self { window, coverage: *coverage };
         announced.window.tell(|probe| probe.coverage(&announced.coverage));
         announced
@@ -356,122 +331,3 @@ impl Drop for Announced {
         self.window.tell(|probe| probe.done());
     }
 }
-
-/// The exact rasterizer, computing in `R`: `f64` or `f32`. Coverage is the same in both.
-///
-/// See the [module](self) for its contract. What [`RenderState::walk`] says does not concern it.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Exact<R>(PhantomData<R>);
-
-impl<R: Scalar> Exact<R> {
-    /// The rasterizer.
-    #[must_use]
-    #[inline]
-    pub const fn new() -> Self {
-        Self(PhantomData)
-    }
-}
-
-impl<R: Scalar> Rasterizer for Exact<R> {
-    type Depth = R;
-
-    fn draw<S: Shader<N>, P: Probe + ?Sized, const N: usize>(
-        &self,
-        triangles: impl Iterator<Item = [NdcVertex<N>; 3]>,
-        state: &RenderState,
-        shader: &S,
-        target: &mut Target<R>,
-        probe: &P,
-    ) {
-        for triangle in triangles {
-            if triangle.iter().all(is_in_guard_band) {
-                draw_triangle::<R, S, P, N>(&triangle, state, shader, target, probe);
-            } else {
-                for piece in fan(cut_to_guard_band(triangle)) {
-                    draw_triangle::<R, S, P, N>(&piece, state, shader, target, probe);
-                }
-            }
-        }
-    }
-}
-
-// ANCHOR: guard_band
-/// How far beyond the border of the view a vertex may be, in NDC.
-const GUARD_BAND: f64 = 2.0;
-
-#[inline]
-pub(crate) fn is_in_guard_band<const N: usize>(vertex: &NdcVertex<N>) -> bool {
-    vertex.w > 0.0 && vertex.position.truncate().abs().max_element() <= GUARD_BAND
-}
-
-/// The part of a triangle in the guard band: only for pipelines that do not clip to the view volume.
-pub(crate) fn cut_to_guard_band<const N: usize>(triangle: [NdcVertex<N>; 3]) -> ArrayVec<NdcVertex<N>, 9> {
-    const PLANES: [Plane; 4] = [
-        Plane::through_eye(dvec4(1.0, 0.0, 0.0, GUARD_BAND)),
-        Plane::through_eye(dvec4(-1.0, 0.0, 0.0, GUARD_BAND)),
-        Plane::through_eye(dvec4(0.0, 1.0, 0.0, GUARD_BAND)),
-        Plane::through_eye(dvec4(0.0, -1.0, 0.0, GUARD_BAND)),
-    ];
-    let clip = triangle.map(|vertex| ClipVertex {
-        position: (vertex.position * vertex.w).extend(vertex.w),
-        varyings: vertex.varyings,
-    });
-    let polygon: Polygon<N> = clip_triangle(clip, &PLANES, ClipTest::BeforeDivide);
-    polygon.into_iter().map(NdcVertex::from).collect()
-}
-// ANCHOR_END: guard_band
-
-// ANCHOR: draw_triangle
-fn draw_triangle<R: Scalar, S: Shader<N>, P: Probe + ?Sized, const N: usize>(
-    triangle: &[NdcVertex<N>; 3],
-    state: &RenderState,
-    shader: &S,
-    target: &mut Target<R>,
-    probe: &P,
-) {
-    // Viewport: NDC → screen, and to 1/256 pixel.
-    let window = target.color.window();
-    let viewport = state.viewport_in(window.rect);
-    let coverage = Coverage::new(triangle.map(|vertex| viewport.pixel_areas(vertex.position)));
-
-    // Culling, by the signed area on the screen.
-    let signed_area = coverage.as_ref().map_or(0.0, Coverage::signed_area);
-    probe.piece(triangle.each_ref().map(Vertex::from), signed_area);
-    let Some(coverage) = coverage.filter(|_| !state.cull.culls(signed_area, state.front_face)) else {
-        probe.culled();
-        return;
-    };
-
-    // What the corners carry, made ready for weights.
-    let varyings = TriangleVaryings::<R, N>::new(triangle, state.interpolation);
-    let gradients = coverage.weight_gradients();
-
-    let area = coverage.bounding_box(window.rect);
-    let _announced = Announced::new(window, &coverage);
-    for y in area.rows() {
-        for (x, weights) in coverage.weights_in_row(area.columns(), y) {
-            // Interpolation.
-            let point = varyings.at(weights);
-            let depth =
-                if state.depth_encoding.is_linear_on_screen() { varyings.depth_at(weights) } else { point.w };
-            // Fragment shading.
-            let shaded: Shaded<R> = if S::USES_DERIVATIVES {
-                shader.fragment_with_derivatives(point.values, varyings.derivatives(&point, gradients))
-            } else {
-                shader.fragment(point.values)
-            };
-            // Depth test, and blending.
-            let verdict = merge(target, state.merge, Rounding::Nearest, [x, y], depth, shaded);
-            probe.fragment(&FragmentEvent {
-                x,
-                y,
-                w: point.w.into(),
-                depth: depth.into(),
-                varyings: &point.values.map(Into::into),
-                color: shaded.color.channels().map(Into::into),
-                verdict,
-            });
-        }
-    }
-}
-// ANCHOR_END: draw_triangle

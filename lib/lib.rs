@@ -29,7 +29,8 @@
 //!   more mipmap        smaller copies of a texture, levels of detail
 //!   more srgb          what the numbers of a picture mean as light
 //!   more varyings      weights corrected by ω, derivatives
-//!   more edge          the exact rasterizer: edge functions, pixel centers, the top-left rule
+//!   more edge          edge functions, pixel centers, the top-left rule
+//!   more exact         the exact rasterizer
 //!   more antialias     several samples in each pixel
 //!   more lanes         eight numbers at a time
 //!   more tiled         the fast rasterizer: the same picture by tiles, lanes and threads
@@ -77,6 +78,7 @@ pub mod mipmap;
 pub mod srgb;
 pub mod varyings;
 pub mod edge;
+pub mod exact;
 pub mod antialias;
 #[cfg(feature = "tiled")]
 pub mod lanes;

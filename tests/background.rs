@@ -5,7 +5,7 @@ use glam::{DVec4, dvec4};
 use proptest::prelude::*;
 use rasterbook::clip::ClipVertex;
 use rasterbook::depth::{DepthBuffer, DepthTest, Target};
-use rasterbook::edge::Exact;
+use rasterbook::exact::Exact;
 use rasterbook::mesh::Mesh;
 use rasterbook::pipeline::{LoadOp, RenderState, draw};
 use rasterbook::probe::Silent;

@@ -11,7 +11,8 @@ use rasterbook::clip::{
 };
 use rasterbook::cull::CullMode;
 use rasterbook::depth::{DepthTest, Target};
-use rasterbook::edge::{Coverage, Exact, SUBPIXELS, Subpixel, center, snap};
+use rasterbook::edge::{Coverage, SUBPIXELS, Subpixel, center, snap};
+use rasterbook::exact::Exact;
 use rasterbook::interpolate::Interpolation;
 use rasterbook::merge::{Blend, Merge};
 use rasterbook::mesh::Mesh;

@@ -8,7 +8,7 @@ use rasterbook::area::Winding;
 use rasterbook::clip::{ClipVertex, ClipVolume};
 use rasterbook::cull::CullMode;
 use rasterbook::depth::{DepthEncoding, DepthTest, Target};
-use rasterbook::edge::Exact;
+use rasterbook::exact::Exact;
 use rasterbook::interpolate::Interpolation;
 use rasterbook::merge::{Merge, Verdict};
 use rasterbook::mesh::Mesh;

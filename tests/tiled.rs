@@ -13,7 +13,7 @@ use rasterbook::area::Winding;
 use rasterbook::clip::{ClipVertex, ClipVolume, DepthRange};
 use rasterbook::cull::CullMode;
 use rasterbook::depth::{DepthEncoding, DepthTest, Target};
-use rasterbook::edge::Exact;
+use rasterbook::exact::Exact;
 use rasterbook::interpolate::Interpolation;
 use rasterbook::merge::{Blend, Merge};
 use rasterbook::mesh::Mesh;

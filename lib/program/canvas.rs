@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::{Failure, Sitting};
 use crate::depth::Target;
-use crate::edge::Exact;
+use crate::exact::Exact;
 use crate::mesh::Mesh;
 use crate::model::{Model, Part};
 use crate::pipeline::{RenderState, draw};

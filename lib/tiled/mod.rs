@@ -1,4 +1,4 @@
-//! Beyond the book: the fast rasterizer. What [`Exact`](crate::edge::Exact) draws in `f32`, to the last bit, in a
+//! Beyond the book: the fast rasterizer. What [`Exact`](crate::exact::Exact) draws in `f32`, to the last bit, in a
 //! fraction of the time.
 //!
 //! Five things make the difference, and each is a file: eight fragments are shaded at a time
@@ -88,7 +88,7 @@ const TILE_HEIGHT: i32 = 32;
 
 /// The fast rasterizer. It keeps its working memory from picture to picture: make one and use it again.
 ///
-/// Computes in `f32`. Probes hear nothing of it: [`Exact`](crate::edge::Exact) draws the same and tells.
+/// Computes in `f32`. Probes hear nothing of it: [`Exact`](crate::exact::Exact) draws the same and tells.
 #[derive(Debug, Default)]
 pub struct Tiled {
     front: Mutex<Front>,

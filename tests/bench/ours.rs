@@ -6,7 +6,7 @@ use rasterbook::Color;
 use rasterbook::clip::{ClipVertex, MAX_VERTICES, NdcVertex, clip_triangle, fan};
 use rasterbook::cull::CullMode;
 use rasterbook::depth::Target;
-use rasterbook::edge::Exact;
+use rasterbook::exact::Exact;
 use rasterbook::light::lambert;
 use rasterbook::mesh::Mesh;
 use rasterbook::pipeline::{LoadOp, RenderState, draw};

@@ -1,0 +1,166 @@
+//! Beyond the book: the exact rasterizer. Which pixels a triangle covers is decided with whole numbers
+//! ([`edge`](crate::edge)).
+//!
+//! Takes triangles in NDC, as the scanline rasterizer does, and stands behind the same door.
+//!
+//! # Contract
+//!
+//! **Which pixels.** The viewport maps NDC −1..1 to 0..width and 0..height, y up; the pixel (i, j) is sampled at its
+//! center (i + ½, j + ½). After clipping and the viewport, and before culling, x and y of each vertex are rounded to the
+//! nearest multiple of 1/256, halves away from zero. All decisions are made on these whole numbers, in 64-bit integers,
+//! which cannot overflow. The facing of a triangle is the sign of its area there; one without area is not drawn. A
+//! sample inside is covered; one on an edge is covered if the edge is a *top* edge (level, the triangle below it) or a
+//! *left* edge (not level, the triangle on its right), as seen on the screen; one on two edges, if both are.
+//!
+//! **Which values.** Weights are E · (1 / sum of the three E), E the exact values of the edge functions at the center,
+//! converted, divided and multiplied with one rounding each. 1/ω, V/ω and the depth are interpolated by these weights,
+//! and V = (V/ω) · 1/(1/ω). The depth is linear on the screen. All arithmetic is that of the number type: four
+//! operations, one rounding each.
+//!
+//! **Which rounding.** Channels are rounded to the nearest of 0..=255, halves upwards; NaN gives 0.
+//!
+//! Triangles that share an edge, with the same two vertices, leave no hole along it and draw nothing twice. Where a
+//! vertex of one lies in the middle of an edge of another (a T-junction), rounding may move it off that edge.
+//!
+//! Vertices outside twice the width and height of the view, and behind the eye, are clipped away before they are
+//! rounded (a *guard band*); a triangle that is still farther than 2¹⁶ pixels from the origin is not drawn.
+//!
+//! Sources: Direct3D 11.3 functional specification, 3.2.3.6 (colors), 3.3 (pixel centers), 3.4.1 (snapping), 3.4.2.1
+//! (top-left rule), 15.11.1 (facing); Vulkan specification, *Basic polygon rasterization* (values by weights); OpenGL
+//! 4.6, 14.6.1, asks only that one of two triangles sharing an edge covers a sample, which follows.
+
+use std::marker::PhantomData;
+
+use arrayvec::ArrayVec;
+use glam::dvec4;
+
+use crate::clip::{ClipTest, ClipVertex, NdcVertex, Plane, Polygon, clip_triangle, fan};
+use crate::depth::Target;
+use crate::edge::{Announced, Coverage};
+use crate::framebuffer::Rounding;
+use crate::merge::merge;
+use crate::pipeline::RenderState;
+use crate::probe::{FragmentEvent, Probe, Vertex};
+use crate::raster::Rasterizer;
+use crate::real::Scalar;
+use crate::shader::{Shaded, Shader};
+use crate::varyings::TriangleVaryings;
+
+/// The exact rasterizer, computing in `R`: `f64` or `f32`. Coverage is the same in both.
+///
+/// See the [module](self) for its contract. What [`RenderState::walk`] says does not concern it.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Exact<R>(PhantomData<R>);
+
+impl<R: Scalar> Exact<R> {
+    /// The rasterizer.
+    #[must_use]
+    #[inline]
+    pub const fn new() -> Self {
+        Self(PhantomData)
+    }
+}
+
+impl<R: Scalar> Rasterizer for Exact<R> {
+    type Depth = R;
+
+    fn draw<S: Shader<N>, P: Probe + ?Sized, const N: usize>(
+        &self,
+        triangles: impl Iterator<Item = [NdcVertex<N>; 3]>,
+        state: &RenderState,
+        shader: &S,
+        target: &mut Target<R>,
+        probe: &P,
+    ) {
+        for triangle in triangles {
+            if triangle.iter().all(is_in_guard_band) {
+                draw_triangle::<R, S, P, N>(&triangle, state, shader, target, probe);
+            } else {
+                for piece in fan(cut_to_guard_band(triangle)) {
+                    draw_triangle::<R, S, P, N>(&piece, state, shader, target, probe);
+                }
+            }
+        }
+    }
+}
+
+// ANCHOR: guard_band
+/// How far beyond the border of the view a vertex may be, in NDC.
+const GUARD_BAND: f64 = 2.0;
+
+#[inline]
+pub(crate) fn is_in_guard_band<const N: usize>(vertex: &NdcVertex<N>) -> bool {
+    vertex.w > 0.0 && vertex.position.truncate().abs().max_element() <= GUARD_BAND
+}
+
+/// The part of a triangle in the guard band: only for pipelines that do not clip to the view volume.
+pub(crate) fn cut_to_guard_band<const N: usize>(triangle: [NdcVertex<N>; 3]) -> ArrayVec<NdcVertex<N>, 9> {
+    const PLANES: [Plane; 4] = [
+        Plane::through_eye(dvec4(1.0, 0.0, 0.0, GUARD_BAND)),
+        Plane::through_eye(dvec4(-1.0, 0.0, 0.0, GUARD_BAND)),
+        Plane::through_eye(dvec4(0.0, 1.0, 0.0, GUARD_BAND)),
+        Plane::through_eye(dvec4(0.0, -1.0, 0.0, GUARD_BAND)),
+    ];
+    let clip = triangle.map(|vertex| ClipVertex {
+        position: (vertex.position * vertex.w).extend(vertex.w),
+        varyings: vertex.varyings,
+    });
+    let polygon: Polygon<N> = clip_triangle(clip, &PLANES, ClipTest::BeforeDivide);
+    polygon.into_iter().map(NdcVertex::from).collect()
+}
+// ANCHOR_END: guard_band
+
+// ANCHOR: draw_triangle
+fn draw_triangle<R: Scalar, S: Shader<N>, P: Probe + ?Sized, const N: usize>(
+    triangle: &[NdcVertex<N>; 3],
+    state: &RenderState,
+    shader: &S,
+    target: &mut Target<R>,
+    probe: &P,
+) {
+    // Viewport: NDC → screen, and to 1/256 pixel.
+    let window = target.color.window();
+    let viewport = state.viewport_in(window.rect);
+    let coverage = Coverage::new(triangle.map(|vertex| viewport.pixel_areas(vertex.position)));
+
+    // Culling, by the signed area on the screen.
+    let signed_area = coverage.as_ref().map_or(0.0, Coverage::signed_area);
+    probe.piece(triangle.each_ref().map(Vertex::from), signed_area);
+    let Some(coverage) = coverage.filter(|_| !state.cull.culls(signed_area, state.front_face)) else {
+        probe.culled();
+        return;
+    };
+
+    // What the corners carry, made ready for weights.
+    let varyings = TriangleVaryings::<R, N>::new(triangle, state.interpolation);
+    let gradients = coverage.weight_gradients();
+
+    let area = coverage.bounding_box(window.rect);
+    let _announced = Announced::new(window, &coverage);
+    for y in area.rows() {
+        for (x, weights) in coverage.weights_in_row(area.columns(), y) {
+            // Interpolation.
+            let point = varyings.at(weights);
+            let depth =
+                if state.depth_encoding.is_linear_on_screen() { varyings.depth_at(weights) } else { point.w };
+            // Fragment shading.
+            let shaded: Shaded<R> = if S::USES_DERIVATIVES {
+                shader.fragment_with_derivatives(point.values, varyings.derivatives(&point, gradients))
+            } else {
+                shader.fragment(point.values)
+            };
+            // Depth test, and blending.
+            let verdict = merge(target, state.merge, Rounding::Nearest, [x, y], depth, shaded);
+            probe.fragment(&FragmentEvent {
+                x,
+                y,
+                w: point.w.into(),
+                depth: depth.into(),
+                varyings: &point.values.map(Into::into),
+                color: shaded.color.channels().map(Into::into),
+                verdict,
+            });
+        }
+    }
+}
+// ANCHOR_END: draw_triangle
