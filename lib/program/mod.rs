@@ -27,6 +27,7 @@ pub mod assets;
 mod canvas;
 mod chapter;
 mod failure;
+mod formulas;
 mod history;
 mod inspect;
 mod output;

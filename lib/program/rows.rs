@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
+use super::formulas::{table, value_names};
 use super::history::{Field, USED, Value, field};
-use super::inspect::{table, value_names};
 use super::record::{FilledTriangle, Pixel, Primitive};
 use crate::Rect;
 use crate::edge::{SUBPIXELS, center};

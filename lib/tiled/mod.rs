@@ -1,12 +1,12 @@
 //! Beyond the book: the fast rasterizer. What [`Exact`](crate::exact::Exact) draws in `f32`, to the last bit, in a
 //! fraction of the time.
 //!
-//! Five things make the difference, and each is a file: eight fragments are shaded at a time
+//! Six things make the difference, and each is a file: eight fragments are shaded at a time
 //! ([`lanes`](crate::lanes)); every vertex is made ready once, however many triangles share it, and triangles that turn
 //! away are gone before anything is reckoned for them (`front.rs`); triangles are sorted into *tiles*, rectangles of
 //! the picture that are small enough to stay near, and a row of tiles belongs to one thread (`bins`, in `front.rs`);
-//! within a tile, triangles that cover only a few pixels share the eight lanes with others (`tile.rs`); and what is
-//! hidden in all of a tile is left out there (`occlusion.rs`).
+//! within a tile, triangles that cover only a few pixels share the eight lanes with others (`tile.rs`); what is hidden
+//! in all of a tile is left out there (`occlusion.rs`); and what is blank is not cleared again (`background.rs`).
 //!
 //! ```text
 //!   vertices ──► shaded, divided, ──► triangles: culled, ──► bins: for each tile, ──► tiles: coverage, depth,
@@ -201,14 +201,14 @@ impl Band<'_> {
         const SIZE: usize = (TILE_WIDTH * TILE_HEIGHT) as usize;
         let (mut colors, mut depths) = ([Color::BLACK; SIZE], [0.0; SIZE]);
         let stride = TILE_WIDTH as usize;
-        for (row, place) in self.places(rect).enumerate() {
-            let near = row * stride..row * stride + place.len();
+        let rows = self.places(rect).enumerate();
+        let rows = rows.map(|(row, place)| (row * stride..row * stride + place.len(), place));
+        for (near, place) in rows.clone() {
             colors[near.clone()].copy_from_slice(&self.colors[place.clone()]);
             depths[near].copy_from_slice(&self.depths[place]);
         }
         draw(Band { rect, stride, colors: &mut colors, depths: &mut depths });
-        for (row, place) in self.places(rect).enumerate() {
-            let near = row * stride..row * stride + place.len();
+        for (near, place) in rows {
             self.colors[place.clone()].copy_from_slice(&colors[near.clone()]);
             self.depths[place].copy_from_slice(&depths[near]);
         }
@@ -220,7 +220,7 @@ impl Band<'_> {
     }
 
     /// Where the rows of a rectangle stand.
-    fn places(&self, rect: Rect) -> impl Iterator<Item = Range<usize>> + use<> {
+    fn places(&self, rect: Rect) -> impl Iterator<Item = Range<usize>> + Clone + use<> {
         let (first, stride) = (self.place([rect.left, rect.bottom]), self.stride);
         (0..rect.rows().len()).map(move |row| {
             let start = first + row * stride;
