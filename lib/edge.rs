@@ -180,7 +180,12 @@ impl Coverage {
     #[must_use]
     #[inline]
     pub fn new(corners: [DVec2; 3]) -> Option<Self> {
-        let [a, b, c] = [snap(corners[0])?, snap(corners[1])?, snap(corners[2])?];
+        Self::of([snap(corners[0])?, snap(corners[1])?, snap(corners[2])?])
+    }
+
+    /// The same for vertices that are rounded already, and near enough.
+    #[inline]
+    pub(crate) fn of([a, b, c]: [Subpixel; 3]) -> Option<Self> {
         let signed_area = EdgeFunction::new(a, b).at(c);
         let edge = |from, to| match signed_area {
             1.. => EdgeFunction::new(from, to),

@@ -61,17 +61,19 @@ pub(super) fn corners(Rect { left, bottom, right, top }: Rect) -> [[i64; 2]; 4] 
 }
 
 /// Whether all values of a triangle's edge functions near it fit into 32 bits.
+///
+/// A value is the difference of two products, of a length along x and one along y.
 pub(super) fn is_narrow([a, b, c]: [Place; 3]) -> bool {
     let size = |axis: usize| {
         let (low, high) = (a[axis].min(b[axis]).min(c[axis]), a[axis].max(b[axis]).max(c[axis]));
-        // Groups of eight begin up to seven pixels to the left, and end as many to the right.
+        // Groups of eight begin up to seven pixels to the left, end as many to the right, and are stepped over by eight.
         i64::from(high) - i64::from(low) + 16 * SUBPIXELS
     };
-    size(0) * size(1) < 1 << 29
+    size(0) * size(1) < 1 << 30
 }
 
 // ANCHOR: narrow
-/// The three edges of a triangle of up to some 70 × 70 pixels, in 32-bit integers.
+/// The three edges of a triangle of up to some 110 × 110 pixels, in 32-bit integers.
 pub(super) struct Narrow {
     /// The values at the first center.
     start: [i32; 3],
@@ -352,5 +354,59 @@ impl Edges for Huge<'_> {
 
     fn values(group: &Self::Group) -> [Lanes; 2] {
         [1, 2].map(|i| Lanes::new(group[i].map(|value| value as f32)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::edge::Coverage;
+    use crate::tiled::front::bounding_box;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn the_largest_narrow_triangles_are_exact(
+            width in 8.0..850.0_f64, corners in prop::array::uniform3((0.0..1.0, 0.0..1.0)), is_as_large_as_may_be in any::<bool>(),
+            // Half pixels: edges run through centers.
+            grid in prop_oneof![Just(1), Just(128)], origin in [0..20_000, 0..20_000], which in any::<[prop::sample::Index; 2]>(),
+        ) {
+            // The longest box of this width, or nearly: places may move by half a pixel.
+            let [width, height] = [width, 16_384.0 / (width + 16.5) - 16.5].map(|side| side * SUBPIXELS as f64);
+            let [mut a, mut b, mut c] = corners;
+            if is_as_large_as_may_be {
+                (a.0, b.0, b.1, c.1) = (0.0, 1.0, 0.0, 1.0);
+            }
+            let places = [a, b, c].map(|(x, y)| [(x * width) as i32 + origin[0], (y * height) as i32 + origin[1]])
+                .map(|place| place.map(|c| c / grid * grid));
+            prop_assert!(is_narrow(places));
+            let Some(coverage) = Coverage::of(places.map(|place| place.map(i64::from))) else { return Ok(()) };
+
+            // What of it lies in one of its tiles, in whole groups.
+            let tile = |axis: usize, length: f64, side: i32| {
+                let [first, last] = [origin[axis], origin[axis] + length as i32].map(|place| (place >> 8) / side);
+                (first + which[axis].index((last - first) as usize + 1) as i32) * side
+            };
+            let (left, bottom) = (tile(0, width, TILE_WIDTH), tile(1, height, TILE_HEIGHT));
+            let tile = Rect { left, bottom, right: left + TILE_WIDTH, top: bottom + TILE_HEIGHT };
+            let Some(area) = bounding_box(places, tile) else { return Ok(()) };
+            let area = Rect { left: area.left / 8 * 8, right: (area.right + 7) / 8 * 8, ..area };
+            let size = [area.columns().len() / LANES, area.rows().len()];
+
+            let mut list = [Touch::default(); GROUPS];
+            let narrow = Narrow::new(places, [area.left, area.bottom]);
+            let touched = narrow.touched(size, size[0], &mut list);
+            for group in 0..size[0] * size[1] {
+                let (x, y) = (area.left + (group % size[0] * LANES) as i32, area.bottom + (group / size[0]) as i32);
+                let values: [_; LANES] = from_fn(|lane| coverage.edge_values(center(x + lane as i32, y)));
+                let covered = values.iter().rev().fold(0, |bits, &here| bits << 1 | i32::from(coverage.covers(here)));
+                let touch = touched.iter().find(|touch| touch.group == group);
+                prop_assert_eq!(touch.map_or(0, |touch| touch.covered), covered);
+                if let Some(touch) = touch {
+                    let expected = [1, 2].map(|i| values.map(|values| values[i] as f32));
+                    prop_assert_eq!(narrow.group(touch).map(Lanes::to_array), expected);
+                }
+            }
+        }
     }
 }
