@@ -14,7 +14,7 @@
 //! ```
 
 use crate::interpolate::{Interpolation, Projected, step_parameter_and_depth};
-use crate::plane::Plane;
+use crate::plane::PixelPlane;
 use crate::probe::Listener;
 use crate::real::Scalar;
 use crate::scanline::{Corner, Walk};
@@ -117,7 +117,7 @@ pub fn w_from_z(z: f64, near: f64, far: f64) -> f64 {
 #[derive(Clone, Debug)]
 pub struct DepthBuffer<D = f64> {
     rect: Rect,
-    values: Plane<D>,
+    values: PixelPlane<D>,
     listener: Option<Listener>,
 }
 
@@ -150,7 +150,7 @@ impl<D: Scalar> DepthBuffer<D> {
 
     /// The plane itself, for who writes many depths at a time; nobody is told of that.
     #[cfg(feature = "tiled")]
-    pub(crate) const fn plane_mut(&mut self) -> &mut Plane<D> {
+    pub(crate) const fn plane_mut(&mut self) -> &mut PixelPlane<D> {
         &mut self.values
     }
 

@@ -14,7 +14,7 @@
 use std::fmt;
 use std::ops::Range;
 
-use crate::plane::Plane;
+use crate::plane::PixelPlane;
 use crate::probe::{Listener, Probe, Window};
 use crate::real::Scalar;
 
@@ -194,7 +194,7 @@ const fn side(from: i32, to: i32) -> u32 {
 pub struct Framebuffer {
     width: u32,
     height: u32,
-    pixels: Plane<Color>,
+    pixels: PixelPlane<Color>,
     listener: Option<Listener>,
 }
 
@@ -307,7 +307,7 @@ impl Framebuffer {
 
     /// The plane itself, for who writes many pixels at a time; nobody is told of that.
     #[cfg(feature = "tiled")]
-    pub(crate) const fn plane_mut(&mut self) -> &mut Plane<Color> {
+    pub(crate) const fn plane_mut(&mut self) -> &mut PixelPlane<Color> {
         &mut self.pixels
     }
 

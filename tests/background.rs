@@ -13,10 +13,11 @@ use rasterbook::raster::Rasterizer;
 use rasterbook::real::Real;
 use rasterbook::shader::{Shaded, Shader};
 use rasterbook::tiled::Tiled;
+use rasterbook::transform::Viewport;
 use rasterbook::{Color, Framebuffer};
 
-/// Six tiles side by side, three of them one above the other; the last ones are not whole.
-const SIZE: (u32, u32) = (344, 90);
+/// Six columns and three rows of tiles, the last ones not whole. Once the rows are whole groups of eight, once not.
+const SIZES: [(u32, u32); 2] = [(344, 90), (341, 90)];
 
 /// All in one color.
 struct Flat;
@@ -37,7 +38,7 @@ impl Shader<0> for Flat {
 #[derive(Clone, Debug)]
 enum Step {
     /// Triangles are drawn, on a background or on what is there.
-    Draw(LoadOp, Color, f64, Vec<DVec4>),
+    Draw(LoadOp, Color, f64, Option<Viewport>, Vec<DVec4>),
     /// A pixel is colored.
     Set(i32, i32),
     /// A depth is written.
@@ -53,9 +54,10 @@ enum Step {
 impl Step {
     fn happen<Z: Rasterizer<Depth = f32>>(&self, target: &mut Target<f32>, rasterizer: &Z) {
         match self {
-            &Self::Draw(load, clear_color, clear_depth, ref corners) => {
+            &Self::Draw(load, clear_color, clear_depth, viewport, ref corners) => {
                 let mesh = Mesh::unindexed(corners.clone()).expect("whole triangles");
-                let state = RenderState { load, clear_color, clear_depth, ..RenderState::default() };
+                let state =
+                    RenderState { load, clear_color, clear_depth, viewport, ..RenderState::default() };
                 draw(&mesh, &Flat, &state, rasterizer, target, &Silent);
             }
             &Self::Set(x, y) => target.color.set(x, y, Color::GREEN),
@@ -64,8 +66,8 @@ impl Step {
             }
             Self::ClearColors => target.color.clear(Color::BLUE),
             Self::ClearDepths => target.depth.clear(0.25),
-            Self::NewColors => target.color = Framebuffer::new(SIZE.0, SIZE.1),
-            Self::NewDepths => target.depth = DepthBuffer::new(SIZE.0, SIZE.1),
+            Self::NewColors => target.color = Framebuffer::new(target.color.width(), target.color.height()),
+            Self::NewDepths => target.depth = DepthBuffer::new(target.color.width(), target.color.height()),
         }
     }
 }
@@ -83,9 +85,13 @@ fn step() -> impl Strategy<Value = Step> {
     let depth = prop_oneof![6 => Just(1.0), 1 => Just(0.0), 1 => Just(-0.0)];
     let load = prop_oneof![3 => Just(LoadOp::Clear), 1 => Just(LoadOp::Load)];
     let triangles = prop::collection::vec(triangle(), 0..3).prop_map(|triangles| triangles.concat());
-    let draw = (load, color, depth, triangles)
-        .prop_map(|(load, color, depth, corners)| Step::Draw(load, color, depth, corners));
-    let place = || (0..SIZE.0 as i32, 0..SIZE.1 as i32);
+    let part = Viewport { x: 70.0, y: 20.5, width: 150.0, height: 40.0 };
+    let viewport = prop_oneof![4 => Just(None), 1 => Just(Some(part))];
+    let draw =
+        (load, color, depth, viewport, triangles).prop_map(|(load, color, depth, viewport, corners)| {
+            Step::Draw(load, color, depth, viewport, corners)
+        });
+    let place = || (0..340, 0..90);
     prop_oneof![
         9 => draw,
         1 => place().prop_map(|(x, y)| Step::Set(x, y)),
@@ -95,19 +101,37 @@ fn step() -> impl Strategy<Value = Step> {
     ]
 }
 
+fn size() -> impl Strategy<Value = (u32, u32)> {
+    prop_oneof![Just(SIZES[0]), Just(SIZES[1])]
+}
+
 fn assert_same(tiled: &Target<f32>, exact: &Target<f32>) {
-    for (x, y) in exact.color.rect().rows().flat_map(|y| (0..SIZE.0 as i32).map(move |x| (x, y))) {
+    let rect = exact.color.rect();
+    for (x, y) in rect.rows().flat_map(|y| rect.columns().map(move |x| (x, y))) {
         assert_eq!(tiled.color.get(x, y), exact.color.get(x, y), "color at ({x}, {y})");
         let depths = [tiled, exact].map(|target| target.depth.get(x, y).map(f32::to_bits));
         assert_eq!(depths[0], depths[1], "depth at ({x}, {y})");
     }
 }
 
+/// What happens to two pictures between two steps.
+#[derive(Clone, Copy, Debug)]
+enum Turn {
+    /// The same goes on.
+    Stay,
+    /// The other one's turn.
+    Other,
+    /// The other one's turn, and it becomes a copy of this one.
+    Copy,
+    /// They exchange their colors, and keep their depths.
+    Swap,
+}
+
 proptest! {
     #[test]
-    fn pictures_one_after_the_other(steps in prop::collection::vec(step(), 1..12)) {
+    fn pictures_one_after_the_other(size in size(), steps in prop::collection::vec(step(), 1..12)) {
         let tiled = Tiled::new();
-        let mut targets = [0, 1].map(|_| Target::<f32>::sized(SIZE.0, SIZE.1));
+        let mut targets = [0, 1].map(|_| Target::<f32>::sized(size.0, size.1));
         for step in &steps {
             let [by_tiles, by_pixels] = &mut targets;
             step.happen(by_tiles, &tiled);
@@ -117,19 +141,64 @@ proptest! {
     }
 
     #[test]
-    fn two_pictures_by_turns(steps in prop::collection::vec((step(), any::<bool>()), 1..12)) {
+    fn two_pictures_by_turns(size in size(), steps in prop::collection::vec(
+        (step(), prop_oneof![Just(Turn::Stay), Just(Turn::Other), Just(Turn::Copy), Just(Turn::Swap)]), 1..12,
+    )) {
         // What is known of a picture stays with it, and with its copy.
         let tiled = Tiled::new();
-        let first = Target::<f32>::sized(SIZE.0, SIZE.1);
-        let mut targets = [[first.clone(), first.clone()], [first.clone(), first]];
-        for (step, is_second) in &steps {
-            if let Step::NewColors = step {
-                targets[usize::from(!is_second)] = targets[usize::from(*is_second)].clone();
+        let pair = [0, 1].map(|_| Target::<f32>::sized(size.0, size.1));
+        let [mut here, mut there] = [pair.clone(), pair];
+        for (step, turn) in &steps {
+            match turn {
+                Turn::Stay => {}
+                Turn::Other => std::mem::swap(&mut here, &mut there),
+                Turn::Copy => there = here.clone(),
+                Turn::Swap => {
+                    let pairs = here.iter_mut().zip(&mut there);
+                    pairs.for_each(|(here, there)| std::mem::swap(&mut here.color, &mut there.color));
+                }
             }
-            let [by_tiles, by_pixels] = &mut targets[usize::from(*is_second)];
+            let [by_tiles, by_pixels] = &mut here;
             step.happen(by_tiles, &tiled);
             step.happen(by_pixels, &Exact::<f32>::new());
             assert_same(by_tiles, by_pixels);
         }
     }
+}
+
+/// A triangle of one depth that covers the lower left half of the view, or only its corner.
+fn half(depth: f64, size: f64, load: LoadOp) -> Step {
+    let corners = [(0.0, 0.0), (size, 0.0), (0.0, size)].map(|(x, y)| dvec4(x - 1.0, y - 1.0, depth, 1.0));
+    Step::Draw(load, Color::BLACK, 1.0, None, corners.to_vec())
+}
+
+#[test]
+fn one_depth_buffer_for_pictures_of_two_sizes() {
+    let tiled = Tiled::new();
+    let mut pictures = [(64, 64), (256, 128)].map(|(width, height)| Framebuffer::new(width, height));
+    let mut depth = DepthBuffer::new(256, 128);
+    // In the second tile of both pictures nothing is drawn at first. But that of the small one has depths that belong to
+    // the first tile of the large one.
+    for (which, size) in [(0, 0.2), (1, 0.45), (0, 2.0)] {
+        let mut target = Target { color: pictures[which].clone(), depth };
+        let mut alone = Target::sized(target.color.width(), target.color.height());
+        // Near in the large picture, far in the small one: what it leaves would hide the other.
+        let step = half(if which == 1 { -0.9 } else { 0.9 }, size, LoadOp::Clear);
+        step.happen(&mut target, &tiled);
+        step.happen(&mut alone, &tiled);
+        assert!(target.color == alone.color, "picture {which}, {size}");
+        (pictures[which], depth) = (target.color, target.depth);
+    }
+}
+
+#[test]
+fn a_smaller_picture_on_the_same_depths() {
+    let tiled = Tiled::new();
+    let [mut by_tiles, mut by_pixels] = [0, 1].map(|_| Target::<f32>::sized(64, 64));
+    half(0.5, 0.5, LoadOp::Clear).happen(&mut by_tiles, &tiled);
+    half(0.5, 0.5, LoadOp::Clear).happen(&mut by_pixels, &Exact::<f32>::new());
+    (by_tiles.color, by_pixels.color) = (Framebuffer::new(64, 32), Framebuffer::new(64, 32));
+    half(0.2, 1.5, LoadOp::Load).happen(&mut by_tiles, &tiled);
+    half(0.2, 1.5, LoadOp::Load).happen(&mut by_pixels, &Exact::<f32>::new());
+    assert_same(&by_tiles, &by_pixels);
 }

@@ -1,7 +1,7 @@
-//! The numbers of each chapter's formula, as the history of a pixel tells them: of corners, of edges, of weights, of a
-//! fragment.
+//! The numbers of corners, clipping, edge functions, weights and fragments, as the history of a pixel tells them. Those
+//! of lines and rows are in `rows.rs`.
 
-use super::history::{Field, Value, field};
+use super::history::{Field, Value, field, table, value_names};
 use super::record::{ClipTriangle, Fragment, Pixel, Point};
 use crate::area::Winding;
 use crate::clip::{ClipTest, ClipVertex, Plane, clip_polygon};
@@ -9,16 +9,6 @@ use crate::edge::{Coverage, SUBPIXELS, center};
 use crate::interpolate::Interpolation;
 use crate::merge::Verdict;
 use crate::varyings::TriangleVaryings;
-
-/// A table with a name for each column but the first.
-pub(super) fn table(columns: &[&str], rows: Vec<(String, Vec<Option<f64>>)>) -> Value {
-    Value::Table { columns: columns.iter().map(|&column| column.to_owned()).collect(), rows }
-}
-
-/// The names of values: V1, V2, …
-pub(super) fn value_names(count: usize) -> Vec<String> {
-    (1..=count).map(|i| format!("V{i}")).collect()
-}
 
 /// Twice the signed area, and what it says; the label names the space in which it was reckoned.
 pub(super) fn facing(area: f64, label: &'static str) -> Vec<Field> {

@@ -294,3 +294,13 @@ fn text_json(text: &str) -> String {
     json.push('"');
     json
 }
+
+/// A table with a name for each column but the first.
+pub(super) fn table(columns: &[&str], rows: Vec<(String, Vec<Option<f64>>)>) -> Value {
+    Value::Table { columns: columns.iter().map(|&column| column.to_owned()).collect(), rows }
+}
+
+/// The names of values: V1, V2, …
+pub(super) fn value_names(count: usize) -> Vec<String> {
+    (1..=count).map(|i| format!("V{i}")).collect()
+}

@@ -6,8 +6,8 @@
 use std::sync::Arc;
 
 use super::chapter::{Sitting, Variant};
-use super::formulas::{clip_fields, edge_fields, facing, fragment_fields, table, vertex_fields};
-use super::history::{Entry, Field, History, Value, field};
+use super::formulas::{clip_fields, edge_fields, facing, fragment_fields, vertex_fields};
+use super::history::{Entry, Field, History, Value, field, table};
 use super::record::{ClipTriangle, Event, Pixel, Point, Primitive, Recorder, within};
 use super::rows::{line_at, rows_at};
 use crate::area::twice_signed_area;

@@ -2,8 +2,7 @@
 
 use glam::DVec2;
 
-use super::formulas::{table, value_names};
-use super::history::{Field, USED, Value, field};
+use super::history::{Field, USED, Value, field, table, value_names};
 use super::record::{FilledTriangle, Pixel, Primitive};
 use crate::Rect;
 use crate::edge::{SUBPIXELS, center};

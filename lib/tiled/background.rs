@@ -2,7 +2,7 @@
 
 use super::Band;
 use crate::pipeline::{LoadOp, RenderState};
-use crate::plane::{Blank, Plane};
+use crate::plane::{Blank, PixelPlane};
 use crate::{Color, Rect};
 
 // ANCHOR: background
@@ -17,8 +17,14 @@ pub(super) struct Background {
 
 impl Background {
     /// The background of a state. What is known of the planes is taken from them: they will be drawn on.
-    pub(super) fn take(state: &RenderState, colors: &mut Plane<Color>, depths: &mut Plane<f32>) -> Self {
-        let blank = [colors.take_blank(), depths.take_blank()];
+    pub(super) fn take(
+        state: &RenderState,
+        window: Rect,
+        colors: &mut PixelPlane<Color>,
+        depths: &mut PixelPlane<f32>,
+    ) -> Self {
+        let size = [window.right, window.top];
+        let blank = [colors.take_blank(size), depths.take_blank(size)];
         Self { load: state.load, color: state.clear_color, depth: state.clear_depth as f32, blank }
     }
 
@@ -27,10 +33,16 @@ impl Background {
         [self.color.bits(), self.depth.to_bits()]
     }
 
-    /// Clears the tiles of a band, which are numbered from `first` on, but for those that are blank. Tiles that stand side
-    /// by side are cleared together.
+    /// Clears the tiles of a band, which are numbered from `first` on, if that is wanted, and but for those that are blank.
+    ///
+    /// Tiles that stand side by side are cleared together: long rows are fetched ahead of their use, those of a single
+    /// tile one by one.
     pub(super) fn clear(&self, band: &mut Band<'_>, first: usize) {
-        let is_blank = |tile| self.blank.iter().zip(self.bits()).all(|(blank, bits)| blank.holds(tile, bits));
+        if self.load != LoadOp::Clear {
+            return;
+        }
+        let bits = self.bits();
+        let is_blank = |tile| self.blank.iter().zip(bits).all(|(blank, bits)| blank.holds(tile, bits));
         let mut run: Option<Rect> = None;
         for (tile, rect) in band.tiles(first) {
             if !is_blank(tile) {
@@ -59,8 +71,8 @@ impl Background {
     /// Gives the planes back what is known of them, now that tiles that are not empty have been drawn.
     pub(super) fn put_back(
         mut self,
-        colors: &mut Plane<Color>,
-        depths: &mut Plane<f32>,
+        colors: &mut PixelPlane<Color>,
+        depths: &mut PixelPlane<f32>,
         tiles: usize,
         is_empty: impl Fn(usize) -> bool,
     ) {

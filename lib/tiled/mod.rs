@@ -1,7 +1,7 @@
 //! Beyond the book: the fast rasterizer. What [`Exact`](crate::exact::Exact) draws in `f32`, to the last bit, in a
 //! fraction of the time.
 //!
-//! Six things make the difference, and each is a file: eight fragments are shaded at a time
+//! Six things make the difference: eight fragments are shaded at a time
 //! ([`lanes`](crate::lanes)); every vertex is made ready once, however many triangles share it, and triangles that turn
 //! away are gone before anything is reckoned for them (`front.rs`); triangles are sorted into *tiles*, rectangles of
 //! the picture that are small enough to stay near, and a row of tiles belongs to one thread (`bins`, in `front.rs`);
@@ -15,8 +15,8 @@
 //! ```
 //!
 //! Within a tile triangles keep their order: the picture does not depend on the number of threads, which is that of the
-//! `rayon` pool in which it is called. Who draws many pictures from a thread outside of the pool pays for each that a
-//! thread must be woken: a tenth of the time of a small picture. `ThreadPool::install` around the loop spares it, or
+//! `rayon` pool in which it is called. A thread outside of the pool must wake one of the pool's for each picture: a tenth
+//! of the time of a small one. `ThreadPool::install` around the loop avoids it, and so does a pool that is built with
 //! `ThreadPoolBuilder::use_current_thread`.
 //!
 //! ```
@@ -133,17 +133,15 @@ fn tiles_of(window: Rect) -> [usize; 2] {
 fn draw_tiles<S: Shader<N>, const N: usize>(frame: &Frame<'_, S, N>, window: Rect, target: &mut Target<f32>) {
     let (width, [columns, rows]) = (window.right as usize, tiles_of(window));
     let (colors, depths) = (target.color.plane_mut(), target.depth.plane_mut());
-    let background = Background::take(frame.state, colors, depths);
+    let background = Background::take(frame.state, window, colors, depths);
     let pixels = width * TILE_HEIGHT as usize;
     let bands = colors.par_chunks_mut(pixels).zip(depths.par_chunks_mut(pixels)).enumerate();
     bands.for_each(|(row, (colors, depths))| {
         let bottom = row as i32 * TILE_HEIGHT;
         let rect = Rect { bottom, top: (bottom + TILE_HEIGHT).min(window.top), ..window };
         let (mut band, first) = (Band { rect, stride: width, colors, depths }, row * columns);
-        if frame.state.load == LoadOp::Clear {
-            // Here and not before: what was just written is still near when the tiles come.
-            background.clear(&mut band, first);
-        }
+        // Here and not before: what was just written is still near when the tiles come.
+        background.clear(&mut band, first);
         band.draw(frame, first);
     });
     background.put_back(colors, depths, columns * rows, |tile| frame.front.is_empty(tile));
@@ -184,7 +182,6 @@ impl Band<'_> {
         }
     }
 }
-
 // ANCHOR_END: tiles
 
 /// The same pixels in groups of eight neighbors, row by row.

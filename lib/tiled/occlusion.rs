@@ -10,8 +10,8 @@ use crate::shader::Shader;
 pub(super) const NOTHING_IS_HIDDEN: f64 = f64::INFINITY;
 
 // ANCHOR: occlusion
-/// The depth behind which nothing can be seen in a tile: that of the nearest triangle that covers all of it, where it is
-/// farthest away.
+/// The depth behind which nothing can be seen in a tile: that of the nearest large triangle that covers all of it, where
+/// it is farthest away.
 ///
 /// ```text
 ///   depth

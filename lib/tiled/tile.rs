@@ -285,13 +285,13 @@ impl<'a> Tile<'a> {
 /// The area, as many columns wider as it takes to begin and to end with a group of eight.
 ///
 /// No triangle covers pixels outside its area: what is tested there is not covered, or else outside the picture.
-fn whole_groups(area: Rect) -> Rect {
+pub(super) fn whole_groups(area: Rect) -> Rect {
     const SIDE: i32 = LANES as i32;
     Rect { left: area.left / SIDE * SIDE, right: (area.right + SIDE - 1) / SIDE * SIDE, ..area }
 }
 
 /// How many groups wide and rows high an area of whole groups is.
-fn size_in_groups(area: Rect) -> [usize; 2] {
+pub(super) fn size_in_groups(area: Rect) -> [usize; 2] {
     [area.columns().len() / LANES, area.rows().len()]
 }
 
