@@ -91,7 +91,7 @@ mod blank {
         /// The plane has been cleared, and then only tiles that are not empty were drawn.
         pub(crate) fn cleared(&mut self, background: u32, tiles: usize, is_empty: impl Fn(usize) -> bool) {
             self.background = background;
-            self.tiles.clear();
+            self.forget();
             self.tiles.extend((0..tiles).map(is_empty));
         }
 

@@ -1,6 +1,9 @@
 //! The fast rasterizer does not clear again what is blank already. Whatever has happened to a picture in between, it
 //! must look as if all of it had been cleared.
 
+#[path = "support/targets.rs"]
+mod targets;
+
 use glam::{DVec4, dvec4};
 use proptest::prelude::*;
 use rasterbook::clip::ClipVertex;
@@ -15,6 +18,7 @@ use rasterbook::shader::{Shaded, Shader};
 use rasterbook::tiled::Tiled;
 use rasterbook::transform::Viewport;
 use rasterbook::{Color, Framebuffer};
+use targets::assert_same;
 
 /// Six columns and three rows of tiles, the last ones not whole. Once the rows are whole groups of eight, once not.
 const SIZES: [(u32, u32); 2] = [(344, 90), (341, 90)];
@@ -103,15 +107,6 @@ fn step() -> impl Strategy<Value = Step> {
 
 fn size() -> impl Strategy<Value = (u32, u32)> {
     prop_oneof![Just(SIZES[0]), Just(SIZES[1])]
-}
-
-fn assert_same(tiled: &Target<f32>, exact: &Target<f32>) {
-    let rect = exact.color.rect();
-    for (x, y) in rect.rows().flat_map(|y| rect.columns().map(move |x| (x, y))) {
-        assert_eq!(tiled.color.get(x, y), exact.color.get(x, y), "color at ({x}, {y})");
-        let depths = [tiled, exact].map(|target| target.depth.get(x, y).map(f32::to_bits));
-        assert_eq!(depths[0], depths[1], "depth at ({x}, {y})");
-    }
 }
 
 /// What happens to two pictures between two steps.

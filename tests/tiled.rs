@@ -2,6 +2,8 @@
 
 #[path = "support/chapters.rs"]
 mod chapters;
+#[path = "support/targets.rs"]
+mod targets;
 
 use std::array::from_fn;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -28,6 +30,7 @@ use rasterbook::tiled::Tiled;
 use rasterbook::transform::Viewport;
 use rasterbook::varyings::Derivatives;
 use rasterbook::{Color, Framebuffer};
+use targets::assert_same;
 
 /// A vertex in clip space, with a color and texture coordinates.
 type Record = (DVec4, [f64; 5]);
@@ -102,17 +105,6 @@ fn draw_with<S: Shader<N>, Z: Rasterizer<Depth = f32>, const N: usize>(
     target.clear(Color::rgb(10, 20, 30), state.clear_depth as f32);
     draw(mesh, shader, state, rasterizer, &mut target, &Silent);
     target
-}
-
-fn assert_same(tiled: &Target<f32>, exact: &Target<f32>) {
-    for y in exact.color.rect().rows() {
-        for x in exact.color.rect().columns() {
-            let depths = [tiled, exact].map(|target| target.depth.get(x, y).expect("inside").to_bits());
-            assert_eq!(depths[0], depths[1], "depth at ({x}, {y})");
-            let colors = [tiled, exact].map(|target| target.color.get(x, y).expect("inside"));
-            assert_eq!(colors[0], colors[1], "color at ({x}, {y})");
-        }
-    }
 }
 
 fn compare<S: Shader<N>, const N: usize>(

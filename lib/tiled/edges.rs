@@ -5,10 +5,10 @@ use std::ops::Add;
 
 use wide::i32x8;
 
-use super::front::{Place, signed_area};
+use super::front::Place;
 use super::{TILE_HEIGHT, TILE_WIDTH};
 use crate::Rect;
-use crate::edge::{EdgeFunction, SUBPIXELS, center, is_top_left};
+use crate::edge::{Coverage, EdgeFunction, SUBPIXELS, center, is_top_left};
 use crate::lanes::{LANES, LaneMask, Lanes, is_less_or_equal};
 use crate::real::Mask;
 
@@ -21,15 +21,11 @@ pub(super) struct Setup {
 }
 
 impl Setup {
-    pub(super) fn new([a, b, c]: [Place; 3]) -> Self {
-        let signed_area = signed_area([a, b, c]);
-        let edge = |from: Place, to: Place| {
-            let (from, to) = if signed_area > 0 { (from, to) } else { (to, from) };
-            EdgeFunction::new(from.map(i64::from), to.map(i64::from))
-        };
-        let edges = [edge(b, c), edge(c, a), edge(a, b)];
+    /// `None` without area.
+    pub(super) fn new(places: [Place; 3]) -> Option<Self> {
+        let Coverage { edges, twice_area, .. } = Coverage::of(places.map(|place| place.map(i64::from)))?;
         let shy = edges.map(|edge| edge.least());
-        Self { edges, shy, one_over_area: 1.0 / (signed_area.abs() as f32) }
+        Some(Self { edges, shy, one_over_area: 1.0 / (twice_area as f32) })
     }
 
     /// The least and the greatest value of an edge function at the centers of a rectangle, less what keeps a tie out.
@@ -361,7 +357,6 @@ impl Edges for Huge<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::edge::Coverage;
     use crate::tiled::front::bounding_box;
     use crate::tiled::tile::{size_in_groups, whole_groups};
     use proptest::prelude::*;

@@ -368,7 +368,7 @@ impl Chunk {
 }
 
 /// Twice the area of a triangle in 1/256 × 1/256 pixel, positive against the clock.
-pub(super) fn signed_area([a, b, c]: [Place; 3]) -> i64 {
+fn signed_area([a, b, c]: [Place; 3]) -> i64 {
     let difference = |to: Place, axis: usize| i64::from(to[axis]) - i64::from(a[axis]);
     difference(b, 0) * difference(c, 1) - difference(b, 1) * difference(c, 0)
 }

@@ -35,7 +35,8 @@ pub(super) fn hidden_behind<'a, S: Shader<N>, const N: usize>(
     }
     let covering = triangles.filter_map(|triangle| {
         let is_large = !is_narrow(triangle.places) && bounding_box(triangle.places, tile) == Some(tile);
-        let setup = is_large.then(|| Setup::new(triangle.places)).filter(|setup| setup.covers(tile))?;
+        let setup = is_large.then(|| Setup::new(triangle.places)).flatten();
+        let setup = setup.filter(|setup| setup.covers(tile))?;
         Some(depth_range(&setup, triangle, tile)[1])
     });
     covering.fold(NOTHING_IS_HIDDEN, f64::min)

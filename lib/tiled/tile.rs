@@ -246,7 +246,7 @@ impl<'a> Tile<'a> {
         triangle: Triangle<'_>,
         area: Rect,
     ) {
-        let setup = Setup::new(triangle.places);
+        let Some(setup) = Setup::new(triangle.places) else { return };
         if self.behind < NOTHING_IS_HIDDEN && depth_range(&setup, triangle, area)[0] > self.behind {
             return;
         }
