@@ -188,6 +188,8 @@ impl Band<'_> {
 struct Groups<'a> {
     /// How many there are from one row to the next.
     stride: usize,
+    /// How many pixels after each one the same place of the next row of tiles is.
+    next: usize,
     colors: &'a mut [[Color; LANES]],
     depths: &'a mut [[f32; LANES]],
 }
@@ -230,6 +232,7 @@ impl Band<'_> {
         let first = self.place(corner);
         Groups {
             stride: self.stride / LANES,
+            next: self.stride * TILE_HEIGHT as usize,
             colors: self.colors[first..].as_chunks_mut().0,
             depths: self.depths[first..].as_chunks_mut().0,
         }

@@ -3,6 +3,7 @@
 use std::array::from_fn;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use prefetch_index::prefetch_index;
 use wide::{f32x8, i32x8};
 
 use super::edges::{Edges, GROUPS, Huge, Narrow, Setup, Split, Touch, is_narrow};
@@ -330,12 +331,13 @@ fn draw_touched<const PLAIN: bool, S: Shader<N>, const N: usize>(
     brush: &Brush<N>,
     setup: &Narrow,
     touched: &[Touch],
-    Groups { colors, depths, .. }: Groups<'_>,
+    Groups { next, colors, depths, .. }: Groups<'_>,
 ) {
     let mut kept = LaneMask::all(true);
     for touch in touched {
         let mask = LaneMask::of_bits(touch.covered);
         let (colors, depths) = (&mut colors[touch.group], &mut depths[touch.group]);
+        fetch(next, colors, depths);
         let keep = draw_group::<PLAIN, S, N>(frame, brush, mask, setup.group(touch), colors, depths);
         kept = kept.and(keep);
     }
@@ -349,7 +351,7 @@ fn draw_area<const PLAIN: bool, S: Shader<N>, E: Edges, const N: usize>(
     brush: &Brush<N>,
     edges: &E,
     [columns, rows]: [usize; 2],
-    Groups { stride, colors, depths }: Groups<'_>,
+    Groups { stride, next, colors, depths }: Groups<'_>,
 ) {
     let mut kept = LaneMask::all(true);
     let mut first = edges.first();
@@ -358,6 +360,7 @@ fn draw_area<const PLAIN: bool, S: Shader<N>, E: Edges, const N: usize>(
         for (colors, depths) in colors.iter_mut().zip(depths).take(columns) {
             let mask = edges.covered(&group);
             if mask.bits() != 0 {
+                fetch(next, colors, depths);
                 let values = E::values(&group);
                 let keep = draw_group::<PLAIN, S, N>(frame, brush, mask, values, colors, depths);
                 kept = kept.and(keep);
@@ -367,6 +370,15 @@ fn draw_area<const PLAIN: bool, S: Shader<N>, E: Edges, const N: usize>(
         edges.step_up(&mut first);
     }
     frame.note(kept);
+}
+
+/// Has the same place of the next row of tiles fetched in the meantime: it is cleared soon.
+///
+/// Only a hint: the picture does not depend on it, and there need not be a next row.
+#[inline(always)]
+fn fetch(next: usize, colors: &[Color; LANES], depths: &[f32; LANES]) {
+    prefetch_index(colors, next);
+    prefetch_index(depths, next);
 }
 
 /// Tests, shades and writes the covered ones of eight neighbors. Which of them the shader keeps.
