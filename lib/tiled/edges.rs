@@ -84,6 +84,7 @@ pub(super) struct Narrow {
 
 impl Narrow {
     /// The edges, seen from the center of a pixel.
+    #[inline(always)]
     pub(super) fn new(places: [Place; 3], [x, y]: [i32; 2]) -> Self {
         const PIXEL: i32 = SUBPIXELS as i32;
         let [a, b, c] =

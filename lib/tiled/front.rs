@@ -218,6 +218,8 @@ impl Vertices {
     }
     // ANCHOR_END: shade_vertices
 
+    /// Inlined, as what follows: what is written to memory here would be read there in other pieces.
+    #[inline(always)]
     fn triangle(&self, corners: [usize; 3], blocks: usize) -> Triangle<'_> {
         Triangle {
             places: corners.map(|corner| self.places[corner]),

@@ -103,9 +103,7 @@ impl<'a> Tile<'a> {
         frame: &Frame<'_, S, N>,
         triangles: impl Iterator<Item = Triangle<'t>>,
     ) {
-        for triangle in triangles {
-            self.draw_triangle(frame, triangle);
-        }
+        triangles.for_each(|triangle| self.draw_triangle(frame, triangle));
         self.flush(frame);
     }
 
