@@ -11,7 +11,7 @@ use super::{TILE_HEIGHT, TILE_WIDTH, tiles_of};
 use crate::Rect;
 use crate::area::Winding;
 use crate::clip::{ClipTest, ClipVertex, NdcVertex, Plane, clip_triangle, fan};
-use crate::edge::{SUBPIXELS, snap};
+use crate::edge::{SUBPIXELS, snapped};
 use crate::exact::{cut_to_guard_band, is_in_guard_band};
 use crate::interpolate::Interpolation;
 use crate::lanes::LANES;
@@ -273,7 +273,11 @@ fn outside_of<const N: usize>(vertex: &ClipVertex<N>, context: &Context<'_>) -> 
 impl Context<'_> {
     /// Where on the screen a vertex is, if it is near enough.
     fn place_of<const N: usize>(&self, vertex: &NdcVertex<N>) -> Option<Place> {
-        snap(self.viewport.pixel_areas(vertex.position)).map(|place| place.map(|c| c as i32))
+        // 1.5 · 2⁵². The sum has no room for fractions, and its lowest bits are those of a whole number of up to 32 bits:
+        // one addition, where `as` must ask first whether the number fits.
+        const WHOLE: f64 = 6_755_399_441_055_744.0;
+        let place = snapped(self.viewport.pixel_areas(vertex.position));
+        place.map(|place| place.map(|c| (c + WHOLE).to_bits() as i32))
     }
 }
 
