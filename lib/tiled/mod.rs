@@ -82,7 +82,7 @@ use front::{Front, Source};
 use tile::{Frame, Tile};
 
 /// The width of a tile in pixels, a multiple of the lanes.
-const TILE_WIDTH: i32 = 64;
+const TILE_WIDTH: i32 = 128;
 /// The height of a tile in pixels.
 const TILE_HEIGHT: i32 = 32;
 
