@@ -230,11 +230,10 @@ impl<'a> Tile<'a> {
         let setup = Narrow::new(triangle.places, [area.left, area.bottom]);
         let groups = self.band.groups_from([area.left, area.bottom]);
         let touched = setup.touched(size_in_groups(area), groups.stride, &mut self.touches);
-        let brush = Brush::new(frame, triangle, setup.one_over_area);
         if is_plain(frame.state) {
-            draw_touched::<true, S, N>(frame, &brush, &setup, touched, groups);
+            draw_touched::<true, S, N>(frame, triangle, &setup, touched, groups);
         } else {
-            draw_touched::<false, S, N>(frame, &brush, &setup, touched, groups);
+            draw_touched::<false, S, N>(frame, triangle, &setup, touched, groups);
         }
     }
 
@@ -270,13 +269,12 @@ impl<'a> Tile<'a> {
         area: Rect,
         edges: E,
     ) {
-        let brush = Brush::new(frame, triangle, setup.one_over_area);
         let groups = self.band.groups_from([area.left, area.bottom]);
         let size = size_in_groups(area);
         if is_plain(frame.state) {
-            draw_area::<true, S, E, N>(frame, &brush, &edges, size, groups);
+            draw_area::<true, S, E, N>(frame, triangle, setup, &edges, size, groups);
         } else {
-            draw_area::<false, S, E, N>(frame, &brush, &edges, size, groups);
+            draw_area::<false, S, E, N>(frame, triangle, setup, &edges, size, groups);
         }
     }
 }
@@ -309,6 +307,8 @@ struct Brush<const N: usize> {
 }
 
 impl<const N: usize> Brush<N> {
+    /// Inlined, and called in the functions that draw: made outside of them, it would be copied once more.
+    #[inline(always)]
     fn new<S: Shader<N>>(frame: &Frame<'_, S, N>, triangle: Triangle<'_>, one_over_area: f32) -> Self {
         let corners = triangle.records.map(corner_of::<N>);
         let vertices = triangle.places.map(|place| place.map(i64::from));
@@ -326,11 +326,12 @@ impl<const N: usize> Brush<N> {
 #[inline(never)]
 fn draw_touched<const PLAIN: bool, S: Shader<N>, const N: usize>(
     frame: &Frame<'_, S, N>,
-    brush: &Brush<N>,
+    triangle: Triangle<'_>,
     setup: &Narrow,
     touched: &[Touch],
     Groups { next, colors, depths, .. }: Groups<'_>,
 ) {
+    let brush = &Brush::new(frame, triangle, setup.one_over_area);
     let mut kept = LaneMask::all(true);
     for touch in touched {
         let mask = LaneMask::of_bits(touch.covered);
@@ -346,11 +347,13 @@ fn draw_touched<const PLAIN: bool, S: Shader<N>, const N: usize>(
 #[inline(never)]
 fn draw_area<const PLAIN: bool, S: Shader<N>, E: Edges, const N: usize>(
     frame: &Frame<'_, S, N>,
-    brush: &Brush<N>,
+    triangle: Triangle<'_>,
+    setup: &Setup,
     edges: &E,
     [columns, rows]: [usize; 2],
     Groups { stride, next, colors, depths }: Groups<'_>,
 ) {
+    let brush = &Brush::new(frame, triangle, setup.one_over_area);
     let mut kept = LaneMask::all(true);
     let mut first = edges.first();
     for (colors, depths) in colors.chunks_mut(stride).zip(depths.chunks_mut(stride)).take(rows) {
