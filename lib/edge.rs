@@ -58,7 +58,7 @@ pub fn snap(position: DVec2) -> Option<Subpixel> {
     snapped(position).map(|place| place.map(|c| c as i64))
 }
 
-/// The same, in whole numbers that are still `f64`.
+/// As [`snap`], in whole numbers that are still `f64`.
 #[inline]
 pub(crate) fn snapped(position: DVec2) -> Option<[f64; 2]> {
     let is_near = position.abs().max_element() <= FARTHEST && !position.is_nan();

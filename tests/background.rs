@@ -21,7 +21,7 @@ use rasterbook::{Color, Framebuffer};
 use targets::assert_same;
 
 /// Six columns and three rows of tiles, the last ones not whole. Once the rows are whole groups of eight, once not.
-const SIZES: [(u32, u32); 2] = [(344, 90), (341, 90)];
+const SIZES: [(u32, u32); 2] = [(728, 90), (725, 90)];
 
 /// All in one color.
 struct Flat;
@@ -89,13 +89,13 @@ fn step() -> impl Strategy<Value = Step> {
     let depth = prop_oneof![6 => Just(1.0), 1 => Just(0.0), 1 => Just(-0.0)];
     let load = prop_oneof![3 => Just(LoadOp::Clear), 1 => Just(LoadOp::Load)];
     let triangles = prop::collection::vec(triangle(), 0..3).prop_map(|triangles| triangles.concat());
-    let part = Viewport { x: 70.0, y: 20.5, width: 150.0, height: 40.0 };
+    let part = Viewport { x: 140.0, y: 20.5, width: 300.0, height: 40.0 };
     let viewport = prop_oneof![4 => Just(None), 1 => Just(Some(part))];
     let draw =
         (load, color, depth, viewport, triangles).prop_map(|(load, color, depth, viewport, corners)| {
             Step::Draw(load, color, depth, viewport, corners)
         });
-    let place = || (0..340, 0..90);
+    let place = || (0..725, 0..90);
     prop_oneof![
         9 => draw,
         1 => place().prop_map(|(x, y)| Step::Set(x, y)),

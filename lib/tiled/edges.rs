@@ -83,7 +83,7 @@ pub(super) struct Narrow {
 }
 
 impl Narrow {
-    /// The edges, seen from the center of a pixel.
+    /// The edges, seen from the center of a pixel. Inlined, so that the places stay in registers.
     #[inline(always)]
     pub(super) fn new(places: [Place; 3], [x, y]: [i32; 2]) -> Self {
         const PIXEL: i32 = SUBPIXELS as i32;

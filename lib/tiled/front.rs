@@ -218,7 +218,8 @@ impl Vertices {
     }
     // ANCHOR_END: shade_vertices
 
-    /// Inlined, as what follows: what is written to memory here would be read there in other pieces.
+    /// Inlined, as [`Narrow::new`](super::edges::Narrow::new) is: places that are written to memory here would be read there
+    /// in wider pieces, for which the processor waits.
     #[inline(always)]
     fn triangle(&self, corners: [usize; 3], blocks: usize) -> Triangle<'_> {
         Triangle {
@@ -273,12 +274,17 @@ fn outside_of<const N: usize>(vertex: &ClipVertex<N>, context: &Context<'_>) -> 
 impl Context<'_> {
     /// Where on the screen a vertex is, if it is near enough.
     fn place_of<const N: usize>(&self, vertex: &NdcVertex<N>) -> Option<Place> {
-        // 1.5 · 2⁵². The sum has no room for fractions, and its lowest bits are those of a whole number of up to 32 bits:
-        // one addition, where `as` must ask first whether the number fits.
-        const WHOLE: f64 = 6_755_399_441_055_744.0;
-        let place = snapped(self.viewport.pixel_areas(vertex.position));
-        place.map(|place| place.map(|c| (c + WHOLE).to_bits() as i32))
+        snapped(self.viewport.pixel_areas(vertex.position)).map(|place| place.map(whole))
     }
+}
+
+/// A whole number of at most 31 bits and a sign, such as `snapped` gives (25 bits), as an integer.
+///
+/// 1.5 · 2⁵² has no room for fractions: added to it, the number stands in the lowest bits. One addition, where `as` asks
+/// first whether the number fits.
+#[inline]
+fn whole(number: f64) -> i32 {
+    (number + 6_755_399_441_055_744.0).to_bits() as i32
 }
 
 fn write_record<const N: usize>(vertex: &NdcVertex<N>, interpolation: Interpolation, record: &mut [f32x8]) {
@@ -398,4 +404,16 @@ pub(super) fn bounding_box([a, b, c]: [Place; 3], window: Rect) -> Option<Rect> 
         top: top.min(window.top),
     };
     (rect.left < rect.right && rect.bottom < rect.top).then_some(rect)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::whole;
+
+    #[test]
+    fn whole_numbers() {
+        for number in [0.0, -0.0, 1.0, -1.0, 16_777_216.0, -16_777_216.0, 2_147_483_647.0, -2_147_483_648.0] {
+            assert_eq!(whole(number), number as i32);
+        }
+    }
 }

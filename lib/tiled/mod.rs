@@ -1,12 +1,13 @@
 //! Beyond the book: the fast rasterizer. What [`Exact`](crate::exact::Exact) draws in `f32`, to the last bit, in a
 //! fraction of the time.
 //!
-//! Six things make the difference: eight fragments are shaded at a time
+//! Seven things make the difference: eight fragments are shaded at a time
 //! ([`lanes`](crate::lanes)); every vertex is made ready once, however many triangles share it, and triangles that turn
 //! away are gone before anything is reckoned for them (`front.rs`); triangles are sorted into *tiles*, rectangles of
 //! the picture that are small enough to stay near, and a row of tiles belongs to one thread (`bins`, in `front.rs`);
 //! within a tile, triangles that cover only a few pixels share the eight lanes with others (`tile.rs`); what is hidden
-//! in all of a tile is left out there (`occlusion.rs`); and what is blank is not cleared again (`background.rs`).
+//! in all of a tile is left out there (`occlusion.rs`); what is blank is not cleared again (`background.rs`); and while
+//! pixels are drawn, others that are soon cleared are fetched (`tile.rs`).
 //!
 //! ```text
 //!   vertices ──► shaded, divided, ──► triangles: culled, ──► bins: for each tile, ──► tiles: coverage, depth,
@@ -139,7 +140,8 @@ fn draw_tiles<S: Shader<N>, const N: usize>(frame: &Frame<'_, S, N>, window: Rec
     bands.for_each(|(row, (colors, depths))| {
         let bottom = row as i32 * TILE_HEIGHT;
         let rect = Rect { bottom, top: (bottom + TILE_HEIGHT).min(window.top), ..window };
-        let (mut band, first) = (Band { rect, stride: width, colors, depths }, row * columns);
+        let (mut band, first) =
+            (Band { rect, stride: width, to_next_band: pixels, colors, depths }, row * columns);
         // Here and not before: what was just written is still near when the tiles come.
         background.clear(&mut band, first);
         band.draw(frame, first);
@@ -152,6 +154,8 @@ struct Band<'a> {
     rect: Rect,
     /// How many pixels there are from one row to the next.
     stride: usize,
+    /// How many there are to the same place of the next band; 0 in a copy, for which nothing is fetched ahead.
+    to_next_band: usize,
     colors: &'a mut [Color],
     depths: &'a mut [f32],
 }
@@ -188,8 +192,8 @@ impl Band<'_> {
 struct Groups<'a> {
     /// How many there are from one row to the next.
     stride: usize,
-    /// How many pixels after each one the same place of the next row of tiles is.
-    next: usize,
+    /// As in [`Band`].
+    to_next_band: usize,
     colors: &'a mut [[Color; LANES]],
     depths: &'a mut [[f32; LANES]],
 }
@@ -206,7 +210,7 @@ impl Band<'_> {
             colors[near.clone()].copy_from_slice(&self.colors[place.clone()]);
             depths[near].copy_from_slice(&self.depths[place]);
         }
-        draw(Band { rect, stride, colors: &mut colors, depths: &mut depths });
+        draw(Band { rect, stride, to_next_band: 0, colors: &mut colors, depths: &mut depths });
         for (near, place) in rows {
             self.colors[place.clone()].copy_from_slice(&colors[near.clone()]);
             self.depths[place].copy_from_slice(&depths[near]);
@@ -232,7 +236,7 @@ impl Band<'_> {
         let first = self.place(corner);
         Groups {
             stride: self.stride / LANES,
-            next: self.stride * TILE_HEIGHT as usize,
+            to_next_band: self.to_next_band,
             colors: self.colors[first..].as_chunks_mut().0,
             depths: self.depths[first..].as_chunks_mut().0,
         }

@@ -103,6 +103,7 @@ impl<'a> Tile<'a> {
         frame: &Frame<'_, S, N>,
         triangles: impl Iterator<Item = Triangle<'t>>,
     ) {
+        // Not `for`: so each chunk's bin has a loop of its own, and triangles stay in registers.
         triangles.for_each(|triangle| self.draw_triangle(frame, triangle));
         self.flush(frame);
     }
@@ -253,28 +254,28 @@ impl<'a> Tile<'a> {
         if setup.misses(area) {
             // An edge has all of the tile on its wrong side.
         } else if !setup.is_split_exact(area) {
-            self.draw_groups(frame, &setup, triangle, area, Huge { setup: &setup, area });
+            self.draw_groups(frame, triangle, &setup, area, Huge { setup: &setup, area });
         } else if setup.covers(area) {
-            self.draw_groups(frame, &setup, triangle, area, Split::<true>::new(&setup, area));
+            self.draw_groups(frame, triangle, &setup, area, Split::<true>::new(&setup, area));
         } else {
-            self.draw_groups(frame, &setup, triangle, area, Split::<false>::new(&setup, area));
+            self.draw_groups(frame, triangle, &setup, area, Split::<false>::new(&setup, area));
         }
     }
 
     fn draw_groups<S: Shader<N>, E: Edges, const N: usize>(
         &mut self,
         frame: &Frame<'_, S, N>,
-        setup: &Setup,
         triangle: Triangle<'_>,
+        setup: &Setup,
         area: Rect,
         edges: E,
     ) {
         let groups = self.band.groups_from([area.left, area.bottom]);
         let size = size_in_groups(area);
         if is_plain(frame.state) {
-            draw_area::<true, S, E, N>(frame, triangle, setup, &edges, size, groups);
+            draw_area::<true, S, E, N>(frame, triangle, setup.one_over_area, &edges, size, groups);
         } else {
-            draw_area::<false, S, E, N>(frame, triangle, setup, &edges, size, groups);
+            draw_area::<false, S, E, N>(frame, triangle, setup.one_over_area, &edges, size, groups);
         }
     }
 }
@@ -329,14 +330,14 @@ fn draw_touched<const PLAIN: bool, S: Shader<N>, const N: usize>(
     triangle: Triangle<'_>,
     setup: &Narrow,
     touched: &[Touch],
-    Groups { next, colors, depths, .. }: Groups<'_>,
+    Groups { to_next_band, colors, depths, .. }: Groups<'_>,
 ) {
     let brush = &Brush::new(frame, triangle, setup.one_over_area);
     let mut kept = LaneMask::all(true);
     for touch in touched {
         let mask = LaneMask::of_bits(touch.covered);
         let (colors, depths) = (&mut colors[touch.group], &mut depths[touch.group]);
-        fetch(next, colors, depths);
+        fetch_ahead(to_next_band, colors, depths);
         let keep = draw_group::<PLAIN, S, N>(frame, brush, mask, setup.group(touch), colors, depths);
         kept = kept.and(keep);
     }
@@ -348,12 +349,12 @@ fn draw_touched<const PLAIN: bool, S: Shader<N>, const N: usize>(
 fn draw_area<const PLAIN: bool, S: Shader<N>, E: Edges, const N: usize>(
     frame: &Frame<'_, S, N>,
     triangle: Triangle<'_>,
-    setup: &Setup,
+    one_over_area: f32,
     edges: &E,
     [columns, rows]: [usize; 2],
-    Groups { stride, next, colors, depths }: Groups<'_>,
+    Groups { stride, to_next_band, colors, depths }: Groups<'_>,
 ) {
-    let brush = &Brush::new(frame, triangle, setup.one_over_area);
+    let brush = &Brush::new(frame, triangle, one_over_area);
     let mut kept = LaneMask::all(true);
     let mut first = edges.first();
     for (colors, depths) in colors.chunks_mut(stride).zip(depths.chunks_mut(stride)).take(rows) {
@@ -361,7 +362,7 @@ fn draw_area<const PLAIN: bool, S: Shader<N>, E: Edges, const N: usize>(
         for (colors, depths) in colors.iter_mut().zip(depths).take(columns) {
             let mask = edges.covered(&group);
             if mask.bits() != 0 {
-                fetch(next, colors, depths);
+                fetch_ahead(to_next_band, colors, depths);
                 let values = E::values(&group);
                 let keep = draw_group::<PLAIN, S, N>(frame, brush, mask, values, colors, depths);
                 kept = kept.and(keep);
@@ -373,13 +374,13 @@ fn draw_area<const PLAIN: bool, S: Shader<N>, E: Edges, const N: usize>(
     frame.note(kept);
 }
 
-/// Has the same place of the next row of tiles fetched in the meantime: it is cleared soon.
+/// Asks for the same place of the next band, which is mostly cleared soon.
 ///
-/// Only a hint: the picture does not depend on it, and there need not be a next row.
+/// Only a hint: the picture does not depend on it, and there need not be a next band.
 #[inline(always)]
-fn fetch(next: usize, colors: &[Color; LANES], depths: &[f32; LANES]) {
-    prefetch_index(colors, next);
-    prefetch_index(depths, next);
+fn fetch_ahead(to_next_band: usize, colors: &[Color; LANES], depths: &[f32; LANES]) {
+    prefetch_index(colors, to_next_band);
+    prefetch_index(depths, to_next_band);
 }
 
 /// Tests, shades and writes the covered ones of eight neighbors. Which of them the shader keeps.
