@@ -95,7 +95,9 @@ fn step() -> impl Strategy<Value = Step> {
         (load, color, depth, viewport, triangles).prop_map(|(load, color, depth, viewport, corners)| {
             Step::Draw(load, color, depth, viewport, corners)
         });
-    let place = || (0..725, 0..90);
+    // In both sizes.
+    let (width, height) = SIZES[1];
+    let place = || (0..width as i32, 0..height as i32);
     prop_oneof![
         9 => draw,
         1 => place().prop_map(|(x, y)| Step::Set(x, y)),
