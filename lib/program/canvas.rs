@@ -101,20 +101,10 @@ impl Canvas {
         state: &RenderState,
     ) {
         let viewport = Some(state.viewport.unwrap_or_else(|| self.viewport()));
-        let state = RenderState { viewport, ..*state };
-        match self.listener.clone() {
-            None => self.draw_heard_by(mesh, shader, &state, &Silent),
-            Some(listener) => self.draw_heard_by(mesh, shader, &state, listener.as_ref()),
-        }
-    }
-
-    fn draw_heard_by<S: Shader<N>, P: Probe + ?Sized, const N: usize>(
-        &mut self,
-        mesh: &Mesh<S::Attributes>,
-        shader: &S,
-        state: &RenderState,
-        probe: &P,
-    ) {
+        let state = &RenderState { viewport, ..*state };
+        let listener = self.listener.clone();
+        // One type for both, so that the pipeline is compiled once for each shader, not twice.
+        let probe: &dyn Probe = listener.as_deref().map_or(&Silent, |listener| listener);
         let target = &mut self.target;
         match self.rasterizer {
             RasterizerChoice::Scanline => draw(mesh, shader, state, &Scanline, target, probe),
@@ -122,7 +112,7 @@ impl Canvas {
             RasterizerChoice::Tiled => {
                 // Depths are of single precision there; numbers that come from it lose nothing on the way.
                 let mut single = target.with_depths_of::<f32>();
-                if self.listener.is_some() {
+                if listener.is_some() {
                     draw(mesh, shader, state, &Exact::<f32>::new(), &mut single, probe);
                 } else {
                     draw(mesh, shader, state, self.tiled.as_ref(), &mut single, probe);

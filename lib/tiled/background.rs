@@ -74,13 +74,13 @@ impl Background {
         colors: &mut PixelPlane<Color>,
         depths: &mut PixelPlane<f32>,
         tiles: usize,
-        is_empty: impl Fn(usize) -> bool,
+        is_empty: &dyn Fn(usize) -> bool,
     ) {
         let bits = self.bits();
         for (blank, bits) in self.blank.iter_mut().zip(bits) {
             match self.load {
-                LoadOp::Clear => blank.cleared(bits, tiles, &is_empty),
-                LoadOp::Load => blank.drawn(&is_empty),
+                LoadOp::Clear => blank.cleared(bits, tiles, is_empty),
+                LoadOp::Load => blank.drawn(is_empty),
             }
         }
         let [of_colors, of_depths] = self.blank;

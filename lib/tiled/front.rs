@@ -1,6 +1,7 @@
 //! The front end: from vertices to lists of triangles for each tile. All of it runs on all threads.
 
 use std::array::from_fn;
+use std::ops::Range;
 
 use arrayvec::ArrayVec;
 use glam::DVec4;
@@ -40,6 +41,13 @@ struct Vertices {
     outside: Vec<u8>,
     /// 1/ω, depth, V/ω: as many blocks of eight numbers for a vertex as it takes.
     records: Vec<f32x8>,
+}
+
+/// Some of them, one after the other, to be filled.
+struct Slots<'a> {
+    places: &'a mut [Place],
+    outside: &'a mut [u8],
+    records: &'a mut [f32x8],
 }
 
 /// The vertex is not finite, or too far away: no triangle of it is drawn.
@@ -116,14 +124,18 @@ impl Front {
         match source {
             Source::Mesh(mesh) => {
                 self.vertices.shade(mesh, shader, &context);
-                self.bin(mesh.triangle_count(), &context, |vertices, chunk, number| {
-                    assemble(vertices, chunk, number, mesh, shader, &context);
+                self.bin(mesh.triangle_count(), &context, &|vertices, chunk, numbers| {
+                    for number in numbers {
+                        assemble(vertices, chunk, number, mesh, shader, &context);
+                    }
                 });
             }
             Source::Pieces(pieces) => {
                 self.vertices.resize(0, context.blocks);
-                self.bin(pieces.len(), &context, |_, chunk, number| {
-                    chunk.add_piece(&pieces[number], &context);
+                self.bin(pieces.len(), &context, &|_, chunk, numbers| {
+                    for piece in &pieces[numbers] {
+                        chunk.add_piece(piece, &context);
+                    }
                 });
             }
         }
@@ -134,7 +146,7 @@ impl Front {
         &mut self,
         triangles: usize,
         context: &Context<'_>,
-        assemble: impl Fn(&Vertices, &mut Chunk, usize) + Sync,
+        assemble: &(dyn Fn(&Vertices, &mut Chunk, Range<usize>) + Sync),
     ) {
         let most = 4 * rayon::current_num_threads();
         let count = triangles.div_ceil(CHUNK).clamp(1, most);
@@ -143,9 +155,7 @@ impl Front {
         let vertices = &self.vertices;
         self.chunks.par_iter_mut().enumerate().for_each(|(i, chunk)| {
             chunk.clear(context);
-            for number in i * size..((i + 1) * size).min(triangles) {
-                assemble(vertices, chunk, number);
-            }
+            assemble(vertices, chunk, i * size..((i + 1) * size).min(triangles));
         });
     }
 
@@ -194,14 +204,10 @@ impl Vertices {
         shader: &S,
         context: &Context<'_>,
     ) {
-        const PART: usize = 1024;
         self.resize(mesh.vertices().len(), context.blocks);
-        let places = self.places.par_chunks_mut(PART);
-        let parts = places.zip(self.outside.par_chunks_mut(PART));
-        let parts = parts.zip(self.records.par_chunks_mut(PART * context.blocks));
-        parts.zip(mesh.vertices().par_chunks(PART)).for_each(|(((places, outside), records), attributes)| {
+        self.each_part(context.blocks, &|first, Slots { places, outside, records }| {
             let slots = places.iter_mut().zip(outside).zip(records.chunks_exact_mut(context.blocks));
-            for (attributes, ((place, outside), record)) in attributes.iter().zip(slots) {
+            for (attributes, ((place, outside), record)) in mesh.vertices()[first..].iter().zip(slots) {
                 let clip = shader.vertex(attributes);
                 *outside = outside_of(&clip, context);
                 let ndc = NdcVertex::from(clip);
@@ -217,6 +223,17 @@ impl Vertices {
         });
     }
     // ANCHOR_END: shade_vertices
+
+    /// Hands the vertices out in parts, to all threads; `shade` is told the number of the first in each.
+    fn each_part(&mut self, blocks: usize, shade: &(dyn Fn(usize, Slots<'_>) + Sync)) {
+        const PART: usize = 1024;
+        let places = self.places.par_chunks_mut(PART);
+        let parts = places.zip(self.outside.par_chunks_mut(PART));
+        let parts = parts.zip(self.records.par_chunks_mut(PART * blocks)).enumerate();
+        parts.for_each(|(i, ((places, outside), records))| {
+            shade(i * PART, Slots { places, outside, records });
+        });
+    }
 
     /// Inlined, as [`Narrow::new`](super::edges::Narrow::new) is: places that are written to memory here would be read there
     /// in wider pieces, for which the processor waits.

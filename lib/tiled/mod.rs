@@ -115,12 +115,19 @@ impl Tiled {
         let mut shared = self.front.try_lock();
         let front = shared.as_deref_mut().unwrap_or(&mut own);
         // Into the pool once, not once for each of the steps.
-        rayon::scope(|_| {
+        in_pool(&mut || {
             front.prepare(source, shader, state, window);
             let frame = Frame { shader, state, front, source, discards: AtomicBool::new(false) };
             draw_tiles(&frame, window, target);
         });
     }
+}
+
+/// Lets a thread of the pool do some work.
+///
+/// This and the other ways to the threads know nothing of shaders: so they are compiled once, and not for each of them.
+fn in_pool(work: &mut (dyn FnMut() + Send)) {
+    rayon::scope(|_| work());
 }
 
 /// How many columns and rows of tiles a picture has.
@@ -130,23 +137,34 @@ fn tiles_of(window: Rect) -> [usize; 2] {
 }
 
 // ANCHOR: tiles
-/// Draws all tiles; a row of tiles is a part of the picture that belongs to one thread alone.
+/// Draws all tiles, those of several bands at a time.
 fn draw_tiles<S: Shader<N>, const N: usize>(frame: &Frame<'_, S, N>, window: Rect, target: &mut Target<f32>) {
-    let (width, [columns, rows]) = (window.right as usize, tiles_of(window));
+    let [columns, rows] = tiles_of(window);
     let (colors, depths) = (target.color.plane_mut(), target.depth.plane_mut());
     let background = Background::take(frame.state, window, colors, depths);
+    each_band(window, colors, depths, &|row, mut band| {
+        // Here and not before: what was just written is still near when the tiles come.
+        background.clear(&mut band, row * columns);
+        band.draw(frame, row * columns);
+    });
+    background.put_back(colors, depths, columns * rows, &|tile| frame.front.is_empty(tile));
+}
+
+/// Hands a picture out in bands, counted from below, each a part that belongs to one thread alone.
+fn each_band(
+    window: Rect,
+    colors: &mut [Color],
+    depths: &mut [f32],
+    draw: &(dyn Fn(usize, Band<'_>) + Sync),
+) {
+    let width = window.right as usize;
     let pixels = width * TILE_HEIGHT as usize;
     let bands = colors.par_chunks_mut(pixels).zip(depths.par_chunks_mut(pixels)).enumerate();
     bands.for_each(|(row, (colors, depths))| {
         let bottom = row as i32 * TILE_HEIGHT;
         let rect = Rect { bottom, top: (bottom + TILE_HEIGHT).min(window.top), ..window };
-        let (mut band, first) =
-            (Band { rect, stride: width, to_next_band: pixels, colors, depths }, row * columns);
-        // Here and not before: what was just written is still near when the tiles come.
-        background.clear(&mut band, first);
-        band.draw(frame, first);
+        draw(row, Band { rect, stride: width, to_next_band: pixels, colors, depths });
     });
-    background.put_back(colors, depths, columns * rows, |tile| frame.front.is_empty(tile));
 }
 
 /// The rows of a picture in which a row of tiles lies, or a copy of one tile.
