@@ -141,7 +141,7 @@ impl Narrow {
         covered
     }
 
-    /// Which groups of eight are touched in an area of so many groups and rows: written to a list, from below. From a group
+    /// Which groups of eight are touched in an area of so many groups and rows: written to a list, from below. From a pixel
     /// to the one above it there are `stride`.
     pub(super) fn touched<'a>(
         &self,
@@ -157,7 +157,7 @@ impl Narrow {
                 let covered = i32::from(covered_bits(signs));
                 // Always written, but counted only if there is something: no branch to be foreseen.
                 list[count % GROUPS] =
-                    Touch { group: row * stride + group, covered, values: [second, third] };
+                    Touch { place: row * stride + group * LANES, covered, values: [second, third] };
                 count += usize::from(covered != 0);
                 signs = from_fn(|i| signs[i] + right[i]);
                 second += self.right[1] * LANES as i32;
@@ -192,8 +192,8 @@ fn covered_bits(values: [i32x8; 3]) -> u8 {
 /// A group of eight pixels of which a triangle covers some.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Touch {
-    /// Where it is: how many groups after the first.
-    pub(super) group: usize,
+    /// Where it is: how many pixels after the first.
+    pub(super) place: usize,
     /// A bit for each pixel.
     pub(super) covered: i32,
     /// The values that belong to the second and the third vertex at the first of the eight.
@@ -397,12 +397,13 @@ mod tests {
 
             let mut list = [Touch::default(); GROUPS];
             let narrow = Narrow::new(places, [area.left, area.bottom]);
-            let touched = narrow.touched(size, size[0], &mut list);
-            for group in 0..size[0] * size[1] {
-                let (x, y) = (area.left + (group % size[0] * LANES) as i32, area.bottom + (group / size[0]) as i32);
+            let stride = size[0] * LANES;
+            let touched = narrow.touched(size, stride, &mut list);
+            for place in (0..stride * size[1]).step_by(LANES) {
+                let (x, y) = (area.left + (place % stride) as i32, area.bottom + (place / stride) as i32);
                 let values: [_; LANES] = from_fn(|lane| coverage.edge_values(center(x + lane as i32, y)));
                 let covered = values.iter().rev().fold(0, |bits, &here| bits << 1 | i32::from(coverage.covers(here)));
-                let touch = touched.iter().find(|touch| touch.group == group);
+                let touch = touched.iter().find(|touch| touch.place == place);
                 prop_assert_eq!(touch.map_or(0, |touch| touch.covered), covered);
                 if let Some(touch) = touch {
                     let expected = [1, 2].map(|i| values.map(|values| values[i] as f32));

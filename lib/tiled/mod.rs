@@ -195,10 +195,10 @@ impl Band<'_> {
             let triangles = || frame.front.triangles_in(frame.source, number);
             if frame.front.is_empty(number) {
                 // Nothing to do.
-            } else if tile.band.stride.is_multiple_of(LANES) {
+            } else if rect.columns().len().is_multiple_of(LANES) {
                 tile.draw(frame, rect, triangles);
             } else {
-                // A tile by itself, since it is drawn elsewhere.
+                // At the right border. A tile by itself, since it is drawn elsewhere.
                 tile.band.with_whole_groups(rect, |band| Tile::new(band).draw(frame, rect, triangles));
             }
         }
@@ -206,18 +206,17 @@ impl Band<'_> {
 }
 // ANCHOR_END: tiles
 
-/// The same pixels in groups of eight neighbors, row by row.
-struct Groups<'a> {
-    /// How many there are from one row to the next.
-    stride: usize,
+/// Those of a band's pixels that come after one of them.
+struct Pixels<'a> {
     /// As in [`Band`].
+    stride: usize,
     to_next_band: usize,
-    colors: &'a mut [[Color; LANES]],
-    depths: &'a mut [[f32; LANES]],
+    colors: &'a mut [Color],
+    depths: &'a mut [f32],
 }
 
 impl Band<'_> {
-    /// Lets a rectangle be drawn in a copy, in which all rows consist of whole groups.
+    /// Lets a rectangle be drawn in a copy, in which all rows have room for whole groups of eight.
     fn with_whole_groups(&mut self, rect: Rect, draw: impl FnOnce(Band<'_>)) {
         const SIZE: usize = (TILE_WIDTH * TILE_HEIGHT) as usize;
         let (mut colors, mut depths) = ([Color::BLACK; SIZE], [0.0; SIZE]);
@@ -249,15 +248,11 @@ impl Band<'_> {
         })
     }
 
-    /// The groups from one on, by its lower left pixel.
-    fn groups_from(&mut self, corner: [i32; 2]) -> Groups<'_> {
+    /// The pixels from one on.
+    fn pixels_from(&mut self, corner: [i32; 2]) -> Pixels<'_> {
         let first = self.place(corner);
-        Groups {
-            stride: self.stride / LANES,
-            to_next_band: self.to_next_band,
-            colors: self.colors[first..].as_chunks_mut().0,
-            depths: self.depths[first..].as_chunks_mut().0,
-        }
+        let &mut Band { stride, to_next_band, .. } = self;
+        Pixels { stride, to_next_band, colors: &mut self.colors[first..], depths: &mut self.depths[first..] }
     }
 }
 

@@ -9,7 +9,7 @@ use wide::{f32x8, i32x8};
 use super::edges::{Edges, GROUPS, Huge, Narrow, Setup, Split, Touch, is_narrow};
 use super::front::{Front, Source, Triangle, bounding_box};
 use super::occlusion::{NOTHING_IS_HIDDEN, depth_range, hidden_behind};
-use super::{Band, Groups};
+use super::{Band, Pixels};
 use crate::depth::DepthTest;
 use crate::edge::gradients_between;
 use crate::interpolate::{Interpolation, Projected};
@@ -229,12 +229,12 @@ impl<'a> Tile<'a> {
         self.flush(frame);
         let area = whole_groups(area);
         let setup = Narrow::new(triangle.places, [area.left, area.bottom]);
-        let groups = self.band.groups_from([area.left, area.bottom]);
-        let touched = setup.touched(size_in_groups(area), groups.stride, &mut self.touches);
+        let pixels = self.band.pixels_from([area.left, area.bottom]);
+        let touched = setup.touched(size_in_groups(area), pixels.stride, &mut self.touches);
         if is_plain(frame.state) {
-            draw_touched::<true, S, N>(frame, triangle, &setup, touched, groups);
+            draw_touched::<true, S, N>(frame, triangle, &setup, touched, pixels);
         } else {
-            draw_touched::<false, S, N>(frame, triangle, &setup, touched, groups);
+            draw_touched::<false, S, N>(frame, triangle, &setup, touched, pixels);
         }
     }
 
@@ -270,12 +270,12 @@ impl<'a> Tile<'a> {
         area: Rect,
         edges: E,
     ) {
-        let groups = self.band.groups_from([area.left, area.bottom]);
+        let pixels = self.band.pixels_from([area.left, area.bottom]);
         let size = size_in_groups(area);
         if is_plain(frame.state) {
-            draw_area::<true, S, E, N>(frame, triangle, setup.one_over_area, &edges, size, groups);
+            draw_area::<true, S, E, N>(frame, triangle, setup.one_over_area, &edges, size, pixels);
         } else {
-            draw_area::<false, S, E, N>(frame, triangle, setup.one_over_area, &edges, size, groups);
+            draw_area::<false, S, E, N>(frame, triangle, setup.one_over_area, &edges, size, pixels);
         }
     }
 }
@@ -330,18 +330,24 @@ fn draw_touched<const PLAIN: bool, S: Shader<N>, const N: usize>(
     triangle: Triangle<'_>,
     setup: &Narrow,
     touched: &[Touch],
-    Groups { to_next_band, colors, depths, .. }: Groups<'_>,
+    Pixels { to_next_band, colors, depths, .. }: Pixels<'_>,
 ) {
     let brush = &Brush::new(frame, triangle, setup.one_over_area);
     let mut kept = LaneMask::all(true);
     for touch in touched {
         let mask = LaneMask::of_bits(touch.covered);
-        let (colors, depths) = (&mut colors[touch.group], &mut depths[touch.group]);
+        let (colors, depths) = (eight(colors, touch.place), eight(depths, touch.place));
         fetch_ahead(to_next_band, colors, depths);
         let keep = draw_group::<PLAIN, S, N>(frame, brush, mask, setup.group(touch), colors, depths);
         kept = kept.and(keep);
     }
     frame.note(kept);
+}
+
+/// The eight pixels from one on.
+#[inline(always)]
+fn eight<T>(pixels: &mut [T], first: usize) -> &mut [T; LANES] {
+    pixels[first..].first_chunk_mut().expect("rows have room for whole groups")
 }
 
 /// Draws the rows of a triangle, eight pixels at a time. A function by itself, as well.
@@ -352,13 +358,14 @@ fn draw_area<const PLAIN: bool, S: Shader<N>, E: Edges, const N: usize>(
     one_over_area: f32,
     edges: &E,
     [columns, rows]: [usize; 2],
-    Groups { stride, to_next_band, colors, depths }: Groups<'_>,
+    Pixels { stride, to_next_band, colors, depths }: Pixels<'_>,
 ) {
     let brush = &Brush::new(frame, triangle, one_over_area);
     let mut kept = LaneMask::all(true);
     let mut first = edges.first();
     for (colors, depths) in colors.chunks_mut(stride).zip(depths.chunks_mut(stride)).take(rows) {
         let mut group = first;
+        let (colors, depths) = (colors.as_chunks_mut().0, depths.as_chunks_mut().0);
         for (colors, depths) in colors.iter_mut().zip(depths).take(columns) {
             let mask = edges.covered(&group);
             if mask.bits() != 0 {
