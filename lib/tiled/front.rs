@@ -152,10 +152,11 @@ impl Front {
         let count = triangles.div_ceil(CHUNK).clamp(1, most);
         let size = triangles.div_ceil(count).max(1);
         self.chunks.resize_with(count, Chunk::default);
+        let first = |chunk: usize| (chunk * size).min(triangles);
         let vertices = &self.vertices;
         self.chunks.par_iter_mut().enumerate().for_each(|(i, chunk)| {
             chunk.clear(context);
-            assemble(vertices, chunk, i * size..((i + 1) * size).min(triangles));
+            assemble(vertices, chunk, first(i)..first(i + 1));
         });
     }
 
