@@ -167,8 +167,9 @@ fn each_band(
     });
 }
 
-/// The rows of a picture in which a row of tiles lies, or a copy of one tile.
+/// The rows of a picture in which a row of tiles lies, or a copy of one tile, or a part of these.
 struct Band<'a> {
+    /// Its lower left pixel is the first of colors and depths.
     rect: Rect,
     /// How many pixels there are from one row to the next.
     stride: usize,
@@ -206,15 +207,6 @@ impl Band<'_> {
 }
 // ANCHOR_END: tiles
 
-/// Those of a band's pixels that come after one of them.
-struct Pixels<'a> {
-    /// As in [`Band`].
-    stride: usize,
-    to_next_band: usize,
-    colors: &'a mut [Color],
-    depths: &'a mut [f32],
-}
-
 impl Band<'_> {
     /// Lets a rectangle be drawn in a copy, in which all rows have room for whole groups of eight.
     fn with_whole_groups(&mut self, rect: Rect, draw: impl FnOnce(Band<'_>)) {
@@ -248,11 +240,11 @@ impl Band<'_> {
         })
     }
 
-    /// The pixels from one on.
-    fn pixels_from(&mut self, corner: [i32; 2]) -> Pixels<'_> {
-        let first = self.place(corner);
-        let &mut Band { stride, to_next_band, .. } = self;
-        Pixels { stride, to_next_band, colors: &mut self.colors[first..], depths: &mut self.depths[first..] }
+    /// A rectangle of it.
+    fn part(&mut self, rect: Rect) -> Band<'_> {
+        let first = self.place([rect.left, rect.bottom]);
+        let (colors, depths) = (&mut self.colors[first..], &mut self.depths[first..]);
+        Band { rect, stride: self.stride, to_next_band: self.to_next_band, colors, depths }
     }
 }
 

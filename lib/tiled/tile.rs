@@ -6,10 +6,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use prefetch_index::prefetch_index;
 use wide::{f32x8, i32x8};
 
+use super::Band;
 use super::edges::{Edges, GROUPS, Huge, Narrow, Setup, Split, Touch, is_narrow};
 use super::front::{Front, Source, Triangle, bounding_box};
 use super::occlusion::{NOTHING_IS_HIDDEN, depth_range, hidden_behind};
-use super::{Band, Pixels};
 use crate::depth::DepthTest;
 use crate::edge::gradients_between;
 use crate::interpolate::{Interpolation, Projected};
@@ -229,12 +229,12 @@ impl<'a> Tile<'a> {
         self.flush(frame);
         let area = whole_groups(area);
         let setup = Narrow::new(triangle.places, [area.left, area.bottom]);
-        let pixels = self.band.pixels_from([area.left, area.bottom]);
-        let touched = setup.touched(size_in_groups(area), pixels.stride, &mut self.touches);
+        let part = self.band.part(area);
+        let touched = setup.touched(size_in_groups(area), part.stride, &mut self.touches);
         if is_plain(frame.state) {
-            draw_touched::<true, S, N>(frame, triangle, &setup, touched, pixels);
+            draw_touched::<true, S, N>(frame, triangle, &setup, touched, part);
         } else {
-            draw_touched::<false, S, N>(frame, triangle, &setup, touched, pixels);
+            draw_touched::<false, S, N>(frame, triangle, &setup, touched, part);
         }
     }
 
@@ -270,12 +270,11 @@ impl<'a> Tile<'a> {
         area: Rect,
         edges: E,
     ) {
-        let pixels = self.band.pixels_from([area.left, area.bottom]);
-        let size = size_in_groups(area);
+        let part = self.band.part(area);
         if is_plain(frame.state) {
-            draw_area::<true, S, E, N>(frame, triangle, setup.one_over_area, &edges, size, pixels);
+            draw_area::<true, S, E, N>(frame, triangle, setup.one_over_area, &edges, part);
         } else {
-            draw_area::<false, S, E, N>(frame, triangle, setup.one_over_area, &edges, size, pixels);
+            draw_area::<false, S, E, N>(frame, triangle, setup.one_over_area, &edges, part);
         }
     }
 }
@@ -330,7 +329,7 @@ fn draw_touched<const PLAIN: bool, S: Shader<N>, const N: usize>(
     triangle: Triangle<'_>,
     setup: &Narrow,
     touched: &[Touch],
-    Pixels { to_next_band, colors, depths, .. }: Pixels<'_>,
+    Band { to_next_band, colors, depths, .. }: Band<'_>,
 ) {
     let brush = &Brush::new(frame, triangle, setup.one_over_area);
     let mut kept = LaneMask::all(true);
@@ -357,11 +356,11 @@ fn draw_area<const PLAIN: bool, S: Shader<N>, E: Edges, const N: usize>(
     triangle: Triangle<'_>,
     one_over_area: f32,
     edges: &E,
-    [columns, rows]: [usize; 2],
-    Pixels { stride, to_next_band, colors, depths }: Pixels<'_>,
+    Band { rect, stride, to_next_band, colors, depths }: Band<'_>,
 ) {
     let brush = &Brush::new(frame, triangle, one_over_area);
     let mut kept = LaneMask::all(true);
+    let [columns, rows] = size_in_groups(rect);
     let mut first = edges.first();
     for (colors, depths) in colors.chunks_mut(stride).zip(depths.chunks_mut(stride)).take(rows) {
         let mut group = first;
