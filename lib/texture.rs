@@ -65,11 +65,11 @@ impl AddressMode {
     ///
     /// Repeated, u is wrapped before it is scaled, as the book does: no division is needed.
     #[inline]
-    fn index<R: Real>(self, u: R, count: R) -> R {
+    fn index<R: Real>(self, u: R, count: R, last: R) -> R {
         match self {
             Self::Clamp | Self::Mirror => self.apply((u * count).floor(), count),
             // Never negative, so that cutting the fraction off later rounds down; what is no number gives way to the last.
-            Self::Repeat => ((u - u.floor()) * count).min(count - R::of(1.0)),
+            Self::Repeat => ((u - u.floor()) * count).min(last),
         }
     }
 }
@@ -89,9 +89,12 @@ impl AddressMode {
 pub struct Texture {
     width: u32,
     height: u32,
-    /// Width and height once more, converted once and not for each texel; exact, since neither is more than 2²⁴.
+    /// Width and height once more, and the last column and row: converted once and not for each texel. Exact, since no
+    /// side is longer than 2²⁴.
     columns: f32,
     rows: f32,
+    last_column: f32,
+    last_row: f32,
     /// Shared, so that a copy of a texture costs nothing.
     texels: Arc<[Color]>,
 }
@@ -106,7 +109,9 @@ impl Texture {
         let count = width as usize * height as usize;
         assert!(width.max(height) <= 1 << 24, "no side of a texture has {} texels", width.max(height));
         assert!(count > 0 && texels.len() == count, "{width}×{height} texels, but {} given", texels.len());
-        Self { width, height, columns: width as f32, rows: height as f32, texels: texels.into() }
+        let (columns, rows) = (width as f32, height as f32);
+        let (last_column, last_row) = (columns - 1.0, rows - 1.0);
+        Self { width, height, columns, rows, last_column, last_row, texels: texels.into() }
     }
 
     /// The 2×2 texture that the book uses up to chapter 10 (Figure 3-10).
@@ -148,8 +153,8 @@ impl Texture {
     #[inline]
     pub fn nearest_texel<R: Real>(&self, [u, v]: [R; 2], mode: AddressMode) -> R::Colors {
         let [width, height] = self.size();
-        let column = mode.index(u, width);
-        let row = mode.index(v, height);
+        let column = mode.index(u, width, R::from(self.last_column));
+        let row = mode.index(v, height, R::from(self.last_row));
         R::look_up_color(column, row, self.width, &self.texels)
     }
     // ANCHOR_END: nearest
