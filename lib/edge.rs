@@ -221,15 +221,17 @@ impl Coverage {
     #[must_use]
     #[inline]
     pub fn weights<R: Scalar>(&self, [_, second, third]: [i64; 3]) -> [R; 2] {
-        [second, third].map(|value| value as f64).map(self.weight())
+        // Whole numbers of up to 53 bits are exact in `f64`; `of` rounds once.
+        let [second, third, area] = [second, third, self.twice_area].map(|value| R::of(value as f64));
+        let one_over_area = R::of(1.0) / area;
+        [second * one_over_area, third * one_over_area]
     }
 
-    /// The value of an edge function → the weight of the vertex opposite to it. Whole numbers of up to 53 bits are exact
-    /// in `f64`; `of` rounds once.
+    /// How much more they weigh one pixel farther to the right.
+    #[must_use]
     #[inline]
-    fn weight<R: Scalar>(&self) -> impl Fn(f64) -> R + use<R> {
-        let one_over_area = R::of(1.0) / R::of(self.twice_area as f64);
-        move |value| R::of(value) * one_over_area
+    pub fn weight_step<R: Scalar>(&self) -> [R; 2] {
+        self.weights(self.edges.map(|edge| edge.step_x * SUBPIXELS))
     }
 
     /// The area with the sign of the winding, doubled, in square pixels.
@@ -293,28 +295,10 @@ impl Coverage {
         })
     }
 
-    /// The covered ones of some columns of a row, from left to right, with [`Self::weights`] there.
-    #[inline]
-    pub(crate) fn weights_in_row<R: Scalar>(
-        &self,
-        columns: Range<i32>,
-        y: i32,
-    ) -> impl Iterator<Item = (i32, [R; 2])> + use<R> {
-        let covered = self.covered_columns(columns, y);
-        // Whole numbers of up to 53 bits: all sums are exact in `f64`, too.
-        let [_, mut second, mut third] = self.edge_values(center(covered.start, y)).map(|value| value as f64);
-        let [_, to_second, to_third] = self.edges.map(|edge| (edge.step_x * SUBPIXELS) as f64);
-        let weight = self.weight();
-        covered.map(move |x| {
-            let weights = [weight(second), weight(third)];
-            (second, third) = (second + to_second, third + to_third);
-            (x, weights)
-        })
-    }
-
     /// Which of some columns of a row are covered: they lie side by side.
+    #[must_use]
     #[inline]
-    fn covered_columns(&self, columns: Range<i32>, y: i32) -> Range<i32> {
+    pub fn covered_columns(&self, columns: Range<i32>, y: i32) -> Range<i32> {
         let values = self.edge_values(center(columns.start, y));
         let [a, b, c] = from_fn(|i| self.edges[i].columns(columns.clone(), values[i]));
         a.start.max(b.start).max(c.start)..a.end.min(b.end).min(c.end)

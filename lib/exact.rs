@@ -13,9 +13,10 @@
 //! *left* edge (not level, the triangle on its right), as seen on the screen; one on two edges, if both are.
 //!
 //! **Which values.** Weights are E · (1 / sum of the three E), E the exact values of the edge functions at the center,
-//! converted, divided and multiplied with one rounding each. 1/ω, V/ω and the depth are interpolated by these weights,
-//! and V = (V/ω) · 1/(1/ω). The depth is linear on the screen. All arithmetic is that of the number type: four
-//! operations, one rounding each.
+//! converted, divided and multiplied with one rounding each. In the first covered pixel of a row 1/ω, V/ω and the depth
+//! are interpolated by these weights; in the nth after it they are that plus n times their change from pixel to pixel,
+//! which comes from the change of E in the same way. V = (V/ω) · 1/(1/ω). The depth is linear on the screen. All
+//! arithmetic is that of the number type: four operations, one rounding each.
 //!
 //! **Which rounding.** Channels are rounded to the nearest of 0..=255, halves upwards; NaN gives 0.
 //!
@@ -36,7 +37,7 @@ use glam::dvec4;
 
 use crate::clip::{ClipTest, ClipVertex, NdcVertex, Plane, Polygon, clip_triangle, fan};
 use crate::depth::Target;
-use crate::edge::{Announced, Coverage};
+use crate::edge::{Announced, Coverage, center};
 use crate::framebuffer::Rounding;
 use crate::merge::merge;
 use crate::pipeline::RenderState;
@@ -131,18 +132,21 @@ fn draw_triangle<R: Scalar, S: Shader<N>, P: Probe + ?Sized, const N: usize>(
         return;
     };
 
-    // What the corners carry, made ready for weights.
+    // What the corners carry, made ready for weights, and how it changes from pixel to pixel.
     let varyings = TriangleVaryings::<R, N>::new(triangle, state.interpolation);
+    let step = varyings.change(coverage.weight_step());
     let gradients = coverage.weight_gradients();
 
     let area = coverage.bounding_box(window.rect);
     let _announced = Announced::new(window, &coverage);
     for y in area.rows() {
-        for (x, weights) in coverage.weights_in_row(area.columns(), y) {
+        let columns = coverage.covered_columns(area.columns(), y);
+        let start = varyings.even_at(coverage.weights(coverage.edge_values(center(columns.start, y))));
+        for (count, x) in columns.enumerate() {
             // Interpolation.
-            let point = varyings.at(weights);
-            let depth =
-                if state.depth_encoding.is_linear_on_screen() { varyings.depth_at(weights) } else { point.w };
+            let even = start.moved(&step, R::of(count as f64));
+            let point = even.multiplied(state.interpolation);
+            let depth = if state.depth_encoding.is_linear_on_screen() { even.depth } else { point.w };
             // Fragment shading.
             let shaded: Shaded<R> = if S::USES_DERIVATIVES {
                 shader.fragment_with_derivatives(point.values, varyings.derivatives(&point, gradients))

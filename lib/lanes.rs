@@ -29,6 +29,9 @@ pub const LANES: usize = 8;
 /// Eight numbers of single precision.
 pub type Lanes = f32x8;
 
+/// Yes for all of them, as bits.
+pub(crate) const ALL: i32 = 0xFF;
+
 /// Yes or no for each of eight numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct LaneMask(f32x8);

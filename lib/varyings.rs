@@ -62,35 +62,11 @@ pub fn weight_gradients<R: Real>([a, b, c]: [DVec2; 3]) -> WeightGradients<R> {
     [[c.y - a.y, a.y - b.y], [a.x - c.x, b.x - a.x]].map(|row| row.map(|change| R::of(change / area)))
 }
 
-/// Something that changes evenly on the screen, given by its value at the first corner and the way to the other two.
-#[derive(Clone, Copy, Debug)]
-struct Even<R> {
-    first: R,
-    to_second: R,
-    to_third: R,
-}
-
-impl<R: Real> Even<R> {
-    #[inline]
-    fn new([first, second, third]: [R; 3]) -> Self {
-        Self { first, to_second: second - first, to_third: third - first }
-    }
-
-    #[inline]
-    fn at(&self, [second, third]: [R; 2]) -> R {
-        self.first + self.to_second * second + self.to_third * third
-    }
-
-    #[inline]
-    fn change(&self, [second, third]: [R; 2]) -> R {
-        self.to_second * second + self.to_third * third
-    }
-}
-
 // ANCHOR: triangle_varyings
-/// What a corner carries, divided by ω: it can be shared by all triangles that meet there.
+/// What changes evenly on the screen: what a corner carries, divided by ω; the same at a point between corners; or how
+/// much all of it changes from there to another point.
 #[derive(Clone, Copy, Debug)]
-pub struct CornerVaryings<R, const N: usize> {
+pub struct EvenVaryings<R, const N: usize> {
     /// 1/ω; for [`Interpolation::Affine`] ω itself.
     pub distance: R,
     /// The depth.
@@ -99,8 +75,8 @@ pub struct CornerVaryings<R, const N: usize> {
     pub values: [R; N],
 }
 
-impl<R: Real, const N: usize> CornerVaryings<R, N> {
-    /// Divides what is to be interpolated by ω.
+impl<R: Real, const N: usize> EvenVaryings<R, N> {
+    /// At a vertex: divides what is to be interpolated by ω. All triangles that meet there can share it.
     #[must_use]
     #[inline]
     pub fn new(vertex: &NdcVertex<N>, interpolation: Interpolation) -> Self {
@@ -113,6 +89,23 @@ impl<R: Real, const N: usize> CornerVaryings<R, N> {
                 Self { distance: over_w, depth, values: values.map(|value| value * over_w) }
             }
         }
+    }
+
+    /// Combines each number with the one of the same meaning.
+    #[inline]
+    fn with(&self, other: &Self, combine: impl Fn(R, R) -> R) -> Self {
+        Self {
+            distance: combine(self.distance, other.distance),
+            depth: combine(self.depth, other.depth),
+            values: from_fn(|k| combine(self.values[k], other.values[k])),
+        }
+    }
+
+    /// After so many times a change.
+    #[must_use]
+    #[inline]
+    pub fn moved(&self, change: &Self, times: R) -> Self {
+        self.with(change, |value, change| value + change * times)
     }
 
     /// Multiplies by ω again: what was interpolated evenly becomes ω and values.
@@ -129,12 +122,28 @@ impl<R: Real, const N: usize> CornerVaryings<R, N> {
     }
 }
 
-/// What the corners of a triangle carry, made ready for weights: 1/ω, V/ω and the depth change evenly on the screen.
+impl<R: Real, const N: usize> EvenVaryings<R, N> {
+    /// How the varyings change at a point, if this is how they change evenly from there to the next pixel.
+    ///
+    /// From V = (V/ω) / (1/ω) by the quotient rule: ∂V = ω (∂(V/ω) − V ∂(1/ω)).
+    #[must_use]
+    #[inline]
+    pub fn derivative(&self, point: &Projected<R, N>, interpolation: Interpolation) -> [R; N] {
+        match interpolation {
+            Interpolation::Affine => self.values,
+            Interpolation::PerspectiveCorrect | Interpolation::Reciprocal => {
+                from_fn(|k| (self.values[k] - point.values[k] * self.distance) * point.w)
+            }
+        }
+    }
+}
+
+/// What the corners of a triangle carry, made ready for weights: its value at the first, and the ways to the other two.
 #[derive(Clone, Copy, Debug)]
 pub struct TriangleVaryings<R, const N: usize> {
-    distance: Even<R>,
-    values: [Even<R>; N],
-    depth: Even<R>,
+    first: EvenVaryings<R, N>,
+    to_second: EvenVaryings<R, N>,
+    to_third: EvenVaryings<R, N>,
     interpolation: Interpolation,
 }
 
@@ -143,65 +152,39 @@ impl<R: Real, const N: usize> TriangleVaryings<R, N> {
     #[must_use]
     #[inline]
     pub fn new(corners: &[NdcVertex<N>; 3], interpolation: Interpolation) -> Self {
-        Self::between(
-            corners.each_ref().map(|vertex| CornerVaryings::new(vertex, interpolation)),
-            interpolation,
-        )
+        let [first, second, third] =
+            corners.each_ref().map(|vertex| EvenVaryings::new(vertex, interpolation));
+        let way = |corner: EvenVaryings<R, N>| corner.with(&first, |corner, first| corner - first);
+        Self { first, to_second: way(second), to_third: way(third), interpolation }
     }
 
-    /// From what the corners carry.
+    /// What changes evenly, where the second and the third corner have these weights.
     #[must_use]
     #[inline]
-    pub fn between([a, b, c]: [CornerVaryings<R, N>; 3], interpolation: Interpolation) -> Self {
-        Self {
-            distance: Even::new([a.distance, b.distance, c.distance]),
-            values: from_fn(|k| Even::new([a.values[k], b.values[k], c.values[k]])),
-            depth: Even::new([a.depth, b.depth, c.depth]),
-            interpolation,
-        }
+    pub fn even_at(&self, [second, third]: [R; 2]) -> EvenVaryings<R, N> {
+        self.first.moved(&self.to_second, second).moved(&self.to_third, third)
+    }
+
+    /// How much it changes where the weights of the second and the third corner change by so much.
+    #[must_use]
+    #[inline]
+    pub fn change(&self, [second, third]: [R; 2]) -> EvenVaryings<R, N> {
+        self.to_second.with(&self.to_third, |to_second, to_third| to_second * second + to_third * third)
     }
 
     /// ω and the varyings where the second and the third corner have these weights.
     #[must_use]
     #[inline]
     pub fn at(&self, weights: [R; 2]) -> Projected<R, N> {
-        self.interpolated(weights, self.interpolation)
-    }
-
-    /// The same, if the kind of interpolation is known.
-    #[inline]
-    pub(crate) fn interpolated(&self, weights: [R; 2], interpolation: Interpolation) -> Projected<R, N> {
-        let (distance, depth) = (self.distance.at(weights), R::of(0.0));
-        let values = from_fn(|k| self.values[k].at(weights));
-        CornerVaryings { distance, depth, values }.multiplied(interpolation)
-    }
-
-    /// The depth there.
-    #[must_use]
-    #[inline]
-    pub fn depth_at(&self, weights: [R; 2]) -> R {
-        self.depth.at(weights)
+        self.even_at(weights).multiplied(self.interpolation)
     }
 
     /// How the varyings change from pixel to pixel at a point.
-    ///
-    /// From V = (V/ω) / (1/ω) by the quotient rule: ∂V = ω (∂(V/ω) − V ∂(1/ω)).
     #[must_use]
     #[inline]
-    pub fn derivatives(&self, point: &Projected<R, N>, [right, up]: WeightGradients<R>) -> Derivatives<R, N> {
-        let along = |direction: [R; 2]| {
-            let distance = self.distance.change(direction);
-            from_fn(|k| {
-                let change = self.values[k].change(direction);
-                match self.interpolation {
-                    Interpolation::Affine => change,
-                    Interpolation::PerspectiveCorrect | Interpolation::Reciprocal => {
-                        (change - point.values[k] * distance) * point.w
-                    }
-                }
-            })
-        };
-        Derivatives { dx: along(right), dy: along(up) }
+    pub fn derivatives(&self, point: &Projected<R, N>, gradients: WeightGradients<R>) -> Derivatives<R, N> {
+        let [dx, dy] = gradients.map(|weights| self.change(weights).derivative(point, self.interpolation));
+        Derivatives { dx, dy }
     }
 }
 // ANCHOR_END: triangle_varyings

@@ -143,9 +143,15 @@ proptest! {
             let values = corners.map(|corner| corner.varyings[0]);
             let [low, high] = [values.iter().copied().fold(5.0, f64::min), values.iter().copied().fold(-5.0, f64::max)];
             let varyings = TriangleVaryings::<R, 1>::new(corners, Interpolation::PerspectiveCorrect);
-            for (x, y, areas) in coverage.pixels(WINDOW) {
-                let value: f64 = varyings.at(coverage.weights(areas)).values[0].into();
-                assert!(value >= low - tolerance && value <= high + tolerance, "{value} at ({x}, {y}) is not in {low}..{high}");
+            let step = varyings.change(coverage.weight_step());
+            for y in 0..WINDOW.top {
+                let columns = coverage.covered_columns(WINDOW.columns(), y);
+                let start = varyings.even_at(coverage.weights(coverage.edge_values(center(columns.start, y))));
+                for (count, x) in columns.enumerate() {
+                    let even = start.moved(&step, R::of(count as f64));
+                    let value: f64 = even.multiplied(Interpolation::PerspectiveCorrect).values[0].into();
+                    assert!(value >= low - tolerance && value <= high + tolerance, "{value} at ({x}, {y}) is not in {low}..{high}");
+                }
             }
         }
         let Some(coverage) = Coverage::new(triangle) else { return Ok(()) };

@@ -20,7 +20,7 @@ use crate::mesh::Mesh;
 use crate::pipeline::RenderState;
 use crate::shader::Shader;
 use crate::transform::Viewport;
-use crate::varyings::CornerVaryings;
+use crate::varyings::EvenVaryings;
 
 /// A place on the screen in 1/256 pixel.
 pub(super) type Place = [i32; 2];
@@ -170,23 +170,38 @@ impl Front {
         self.chunks.iter().all(|chunk| chunk.bins[tile].is_empty())
     }
 
-    /// The triangles that may touch a tile, in order.
-    pub(super) fn triangles_in<'a, S: Shader<N>, const N: usize>(
+    /// Does something with each of the triangles that may touch a tile, in order.
+    #[inline(always)]
+    pub(super) fn each_triangle_in<'a, S: Shader<N>, const N: usize>(
         &'a self,
-        source: &'a Source<'_, S, N>,
+        source: &Source<'_, S, N>,
         tile: usize,
-    ) -> impl Iterator<Item = Triangle<'a>> {
-        self.chunks.iter().flat_map(move |chunk| {
-            chunk.bins[tile].iter().map(move |&number| match source {
-                Source::Mesh(mesh) if number & EXTRA == 0 => {
-                    self.vertices.triangle(mesh.triangle(number as usize), self.blocks)
-                }
-                _ => {
-                    let first = 3 * (number & !EXTRA) as usize;
-                    chunk.extra.triangle([first, first + 1, first + 2], self.blocks)
-                }
-            })
-        })
+        mut draw: impl FnMut(Triangle<'a>),
+    ) {
+        for chunk in &self.chunks {
+            for &number in &chunk.bins[tile] {
+                draw(self.triangle(source, chunk, number));
+            }
+        }
+    }
+
+    /// Inlined, so that triangles stay in registers.
+    #[inline(always)]
+    fn triangle<'a, S: Shader<N>, const N: usize>(
+        &'a self,
+        source: &Source<'_, S, N>,
+        chunk: &'a Chunk,
+        number: u32,
+    ) -> Triangle<'a> {
+        match source {
+            Source::Mesh(mesh) if number & EXTRA == 0 => {
+                self.vertices.triangle(mesh.triangle(number as usize), self.blocks)
+            }
+            _ => {
+                let first = 3 * (number & !EXTRA) as usize;
+                chunk.extra.triangle([first, first + 1, first + 2], self.blocks)
+            }
+        }
     }
 }
 
@@ -236,7 +251,7 @@ impl Vertices {
         });
     }
 
-    /// Inlined, as [`Narrow::new`](super::edges::Narrow::new) is: places that are written to memory here would be read there
+    /// Inlined, as [`Small::new`](super::edges::Small::new) is: places that are written to memory here would be read there
     /// in wider pieces, for which the processor waits.
     #[inline(always)]
     fn triangle(&self, corners: [usize; 3], blocks: usize) -> Triangle<'_> {
@@ -306,7 +321,7 @@ fn whole(number: f64) -> i32 {
 }
 
 fn write_record<const N: usize>(vertex: &NdcVertex<N>, interpolation: Interpolation, record: &mut [f32x8]) {
-    let corner = CornerVaryings::<f32, N>::new(vertex, interpolation);
+    let corner = EvenVaryings::<f32, N>::new(vertex, interpolation);
     let mut numbers = [corner.distance, corner.depth].into_iter().chain(corner.values);
     for block in record {
         *block = f32x8::new(from_fn(|_| numbers.next().unwrap_or(0.0)));
@@ -386,7 +401,7 @@ impl Chunk {
         if area == 0 || context.state.cull.culls_winding(winding, context.state.front_face) {
             return;
         }
-        let Some(Rect { left, bottom, right, top }) = bounding_box(places, context.window) else { return };
+        let Some(Rect { left, bottom, right, top }) = shared(box_of(places), context.window) else { return };
         self.has_large |= right - left >= TILE_WIDTH && top - bottom >= TILE_HEIGHT;
         for row in bottom / TILE_HEIGHT..=(top - 1) / TILE_HEIGHT {
             for column in left / TILE_WIDTH..=(right - 1) / TILE_WIDTH {
@@ -405,9 +420,12 @@ fn signed_area([a, b, c]: [Place; 3]) -> i64 {
 
 /// The pixels of the window whose centers lie in the bounding box; `None` if there are none.
 ///
+/// The pixels whose centers lie in the bounding box of a triangle, in the picture or not.
+///
 /// As [`Coverage::bounding_box`](crate::edge::Coverage::bounding_box), but in the 32 bits that places have here: it is
 /// asked for every triangle, and once more in each of its tiles.
-pub(super) fn bounding_box([a, b, c]: [Place; 3], window: Rect) -> Option<Rect> {
+#[inline(always)]
+pub(super) fn box_of([a, b, c]: [Place; 3]) -> Rect {
     const PIXEL: i32 = SUBPIXELS as i32;
     let range = |axis: usize| {
         let (low, high) = (a[axis].min(b[axis]).min(c[axis]), a[axis].max(b[axis]).max(c[axis]));
@@ -415,15 +433,20 @@ pub(super) fn bounding_box([a, b, c]: [Place; 3], window: Rect) -> Option<Rect> 
         ((low + PIXEL / 2 - 1) >> 8, ((high - PIXEL / 2) >> 8) + 1)
     };
     let ((left, right), (bottom, top)) = (range(0), range(1));
+    Rect { left, bottom, right, top }
+}
+
+/// What two rectangles share, if anything.
+#[inline(always)]
+pub(super) fn shared(a: Rect, b: Rect) -> Option<Rect> {
     let rect = Rect {
-        left: left.max(window.left),
-        bottom: bottom.max(window.bottom),
-        right: right.min(window.right),
-        top: top.min(window.top),
+        left: a.left.max(b.left),
+        bottom: a.bottom.max(b.bottom),
+        right: a.right.min(b.right),
+        top: a.top.min(b.top),
     };
     (rect.left < rect.right && rect.bottom < rect.top).then_some(rect)
 }
-
 #[cfg(test)]
 mod tests {
     use super::whole;

@@ -1,13 +1,14 @@
 //! Beyond the book: the fast rasterizer. What [`Exact`](crate::exact::Exact) draws in `f32`, to the last bit, in a
 //! fraction of the time.
 //!
-//! Seven things make the difference: eight fragments are shaded at a time
+//! Eight things make the difference: eight fragments are shaded at a time
 //! ([`lanes`](crate::lanes)); every vertex is made ready once, however many triangles share it, and triangles that turn
 //! away are gone before anything is reckoned for them (`front.rs`); triangles are sorted into *tiles*, rectangles of
 //! the picture that are small enough to stay near, and a row of tiles belongs to one thread (`bins`, in `front.rs`);
-//! within a tile, triangles that cover only a few pixels share the eight lanes with others (`tile.rs`); what is hidden
-//! in all of a tile is left out there (`occlusion.rs`); what is blank is not cleared again (`background.rs`); and while
-//! pixels are drawn, others that are soon cleared are fetched (`tile.rs`).
+//! within a tile, the covered part of a row is known by its ends (`edges.rs`), and values go on evenly from its first
+//! pixel (`record.rs`); triangles that cover only a few pixels share the eight lanes with others (`tile.rs`); what is
+//! hidden in all of a tile is left out there (`occlusion.rs`); what is blank is not cleared again (`background.rs`); and
+//! while pixels are drawn, others that are soon cleared are fetched (`tile.rs`).
 //!
 //! ```text
 //!   vertices ──► shaded, divided, ──► triangles: culled, ──► bins: for each tile, ──► tiles: coverage, depth,
@@ -60,6 +61,7 @@ mod background;
 mod edges;
 mod front;
 mod occlusion;
+mod record;
 mod tile;
 
 use std::ops::Range;
@@ -117,7 +119,14 @@ impl Tiled {
         // Into the pool once, not once for each of the steps.
         in_pool(&mut || {
             front.prepare(source, shader, state, window);
-            let frame = Frame { shader, state, front, source, discards: AtomicBool::new(false) };
+            let frame = Frame {
+                shader,
+                state,
+                front,
+                source,
+                columns: window.right,
+                discards: AtomicBool::new(false),
+            };
             draw_tiles(&frame, window, target);
         });
     }
@@ -145,7 +154,7 @@ fn draw_tiles<S: Shader<N>, const N: usize>(frame: &Frame<'_, S, N>, window: Rec
     each_band(window, colors, depths, &|row, mut band| {
         // Here and not before: what was just written is still near when the tiles come.
         background.clear(&mut band, row * columns);
-        band.draw(frame, row * columns);
+        band.with_room(|band| band.draw(frame, row * columns));
     });
     background.put_back(colors, depths, columns * rows, &|tile| frame.front.is_empty(tile));
 }
@@ -193,14 +202,8 @@ impl Band<'_> {
         let tiles = self.tiles(first);
         let mut tile = Tile::new(self);
         for (number, rect) in tiles {
-            let triangles = || frame.front.triangles_in(frame.source, number);
-            if frame.front.is_empty(number) {
-                // Nothing to do.
-            } else if rect.columns().len().is_multiple_of(LANES) {
-                tile.draw(frame, rect, triangles);
-            } else {
-                // At the right border. A tile by itself, since it is drawn elsewhere.
-                tile.band.with_whole_groups(rect, |band| Tile::new(band).draw(frame, rect, triangles));
+            if !frame.front.is_empty(number) {
+                tile.draw(frame, number, rect);
             }
         }
     }
@@ -208,22 +211,18 @@ impl Band<'_> {
 // ANCHOR_END: tiles
 
 impl Band<'_> {
-    /// Lets a rectangle be drawn in a copy, in which all rows have room for whole groups of eight.
-    fn with_whole_groups(&mut self, rect: Rect, draw: impl FnOnce(Band<'_>)) {
-        const SIZE: usize = (TILE_WIDTH * TILE_HEIGHT) as usize;
-        let (mut colors, mut depths) = ([Color::BLACK; SIZE], [0.0; SIZE]);
-        let stride = TILE_WIDTH as usize;
-        let rows = self.places(rect).enumerate();
-        let rows = rows.map(|(row, place)| (row * stride..row * stride + place.len(), place));
-        for (near, place) in rows.clone() {
-            colors[near.clone()].copy_from_slice(&self.colors[place.clone()]);
-            depths[near].copy_from_slice(&self.depths[place]);
+    /// Lets it be drawn: where it is, or in a copy if it has no room for a group of eight pixels.
+    fn with_room(self, draw: impl FnOnce(Band<'_>)) {
+        let count = self.colors.len();
+        if count >= LANES {
+            return draw(self);
         }
-        draw(Band { rect, stride, to_next_band: 0, colors: &mut colors, depths: &mut depths });
-        for (near, place) in rows {
-            self.colors[place.clone()].copy_from_slice(&colors[near.clone()]);
-            self.depths[place].copy_from_slice(&depths[near]);
-        }
+        let (mut colors, mut depths) = ([Color::BLACK; LANES], [0.0; LANES]);
+        colors[..count].copy_from_slice(self.colors);
+        depths[..count].copy_from_slice(self.depths);
+        draw(Band { to_next_band: 0, colors: &mut colors, depths: &mut depths, ..self });
+        self.colors.copy_from_slice(&colors[..count]);
+        self.depths.copy_from_slice(&depths[..count]);
     }
 
     /// Where in the band a pixel stands.

@@ -1,9 +1,9 @@
 //! What is hidden in all of a tile need not be drawn there.
 
-use super::edges::{Setup, corners, is_narrow};
-use super::front::{Triangle, bounding_box};
+use super::front::{Triangle, box_of, shared};
 use super::tile::{Frame, is_plain};
 use crate::Rect;
+use crate::edge::{Coverage, Subpixel, center};
 use crate::shader::Shader;
 
 /// No depth is behind this one.
@@ -25,33 +25,46 @@ pub(super) const NOTHING_IS_HIDDEN: f64 = f64::INFINITY;
 /// ```
 ///
 /// Only with the default options, under which the nearest fragment stays.
-pub(super) fn hidden_behind<'a, S: Shader<N>, const N: usize>(
+pub(super) fn hidden_behind<S: Shader<N>, const N: usize>(
     frame: &Frame<'_, S, N>,
-    triangles: impl Iterator<Item = Triangle<'a>>,
+    number: usize,
     tile: Rect,
 ) -> f64 {
+    let mut behind = NOTHING_IS_HIDDEN;
     if !is_plain(frame.state) {
-        return NOTHING_IS_HIDDEN;
+        return behind;
     }
-    let covering = triangles.filter_map(|triangle| {
-        let is_large = !is_narrow(triangle.places) && bounding_box(triangle.places, tile) == Some(tile);
-        let setup = is_large.then(|| Setup::new(triangle.places)).flatten();
-        let setup = setup.filter(|setup| setup.covers(tile))?;
-        Some(depth_range(&setup, triangle, tile)[1])
+    frame.front.each_triangle_in(frame.source, number, |triangle| {
+        if shared(box_of(triangle.places), tile) == Some(tile)
+            && let Some(coverage) = coverage_of(triangle)
+            && corners(tile).into_iter().all(|corner| coverage.covers(coverage.edge_values(corner)))
+        {
+            behind = behind.min(depth_range(&coverage, triangle, tile)[1]);
+        }
     });
-    covering.fold(NOTHING_IS_HIDDEN, f64::min)
+    behind
+}
+
+/// The outermost centers of a rectangle: what changes evenly has its extremes there.
+fn corners(Rect { left, bottom, right, top }: Rect) -> [Subpixel; 4] {
+    [(left, bottom), (right - 1, bottom), (left, top - 1), (right - 1, top - 1)].map(|(x, y)| center(x, y))
+}
+
+/// A triangle that has been snapped; `None` without area.
+pub(super) fn coverage_of(triangle: Triangle<'_>) -> Option<Coverage> {
+    Coverage::of(triangle.places.map(|place| place.map(i64::from)))
 }
 
 /// The least and the greatest depth that a triangle can have in a rectangle, with room for rounding.
-pub(super) fn depth_range(setup: &Setup, triangle: Triangle<'_>, rect: Rect) -> [f64; 2] {
+pub(super) fn depth_range(coverage: &Coverage, triangle: Triangle<'_>, rect: Rect) -> [f64; 2] {
     let [first, second, third] = triangle.records.map(|record| f64::from(record[0].as_array_ref()[1]));
     let (to_second, to_third) = (second - first, third - first);
     let depths = corners(rect).map(|corner| {
-        let [second, third] = [1, 2].map(|i| setup.edges[i].at(corner) as f64);
-        first + (to_second * second + to_third * third) * f64::from(setup.one_over_area)
+        let [second, third] = coverage.weights::<f64>(coverage.edge_values(corner));
+        first + to_second * second + to_third * third
     });
-    // A pixel's depth takes some seven roundings of 2⁻²⁴ each.
-    let room = (first.abs() + to_second.abs() + to_third.abs()) * f64::from(f32::EPSILON) * 8.0;
+    // A pixel's depth takes some twenty roundings of 2⁻²⁴ each, on the way to the first of its row and from there.
+    let room = (first.abs() + to_second.abs() + to_third.abs()) * f64::from(f32::EPSILON) * 16.0;
     [depths.into_iter().fold(f64::MAX, f64::min) - room, depths.into_iter().fold(f64::MIN, f64::max) + room]
 }
 // ANCHOR_END: occlusion

@@ -1,24 +1,24 @@
 //! One tile: coverage, depth test, shading and writing of the triangles in its bin.
 
-use std::array::from_fn;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use prefetch_index::prefetch_index;
 use wide::{f32x8, i32x8};
 
-use super::Band;
-use super::edges::{Edges, GROUPS, Huge, Narrow, Setup, Split, Touch, is_narrow};
-use super::front::{Front, Source, Triangle, bounding_box};
-use super::occlusion::{NOTHING_IS_HIDDEN, depth_range, hidden_behind};
+use super::edges::{SMALL, Setup, Small, Spans};
+use super::front::{Front, Source, Triangle, box_of, shared};
+use super::occlusion::{NOTHING_IS_HIDDEN, coverage_of, depth_range, hidden_behind};
+use super::record::{Numbers, Record, Ways, even};
+use super::{Band, TILE_HEIGHT, TILE_WIDTH};
 use crate::depth::DepthTest;
 use crate::edge::gradients_between;
 use crate::interpolate::{Interpolation, Projected};
-use crate::lanes::{LANES, LaneMask, Lanes, is_greater, is_less_or_equal, packed};
+use crate::lanes::{ALL, LANES, LaneMask, Lanes, is_greater, is_less_or_equal, packed};
 use crate::merge::{Blend, Merge};
 use crate::pipeline::RenderState;
 use crate::real::{Mask, Real};
 use crate::shader::{Paint, Shaded, Shader};
-use crate::varyings::{CornerVaryings, TriangleVaryings, WeightGradients};
+use crate::varyings::{Derivatives, EvenVaryings};
 use crate::{Color, Rect};
 
 /// What all tiles of a picture share.
@@ -27,6 +27,8 @@ pub(super) struct Frame<'a, S: Shader<N>, const N: usize> {
     pub(super) state: &'a RenderState,
     pub(super) front: &'a Front,
     pub(super) source: &'a Source<'a, S, N>,
+    /// How wide the picture is.
+    pub(super) columns: i32,
     /// Whether the shader has been seen to throw fragments of larger triangles away: only these can hide others.
     pub(super) discards: AtomicBool,
 }
@@ -39,11 +41,14 @@ pub(super) struct Tile<'a> {
     /// Nothing that is deeper than this can be seen.
     behind: f64,
     queue: Queue,
-    /// How much the second and the third vertex of a small triangle weigh, row by row.
-    weights: [[Lanes; 2]; SMALL as usize],
-    /// The groups that a triangle touches.
-    touches: [Touch; GROUPS],
+    /// What a small triangle covers first in each row: which column, and its record.
+    starts: [(usize, f32x8); SMALL],
+    /// What a larger one covers.
+    spans: Spans,
 }
+
+/// Steps to the right, as a factor.
+const STEPS: [f32; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 
 /// Fragments of small triangles that wait until there are eight of them.
 struct Queue {
@@ -54,13 +59,10 @@ struct Queue {
     places: [usize; LANES],
 }
 
-/// Up to this many pixels wide and high, a triangle is small: its coverage fits into 64 bits.
-const SMALL: i32 = 8;
-
 impl<S: Shader<N>, const N: usize> Frame<'_, S, N> {
     /// Notes whether the shader has thrown away any.
-    fn note(&self, kept: LaneMask) {
-        if kept.bits() != LaneMask::all(true).bits() {
+    fn note(&self, thrown_away: i32) {
+        if thrown_away != 0 {
             self.discards.store(true, Ordering::Relaxed);
         }
     }
@@ -74,56 +76,58 @@ impl<'a> Tile<'a> {
             rect: Rect::sized(0, 0),
             behind: NOTHING_IS_HIDDEN,
             queue: Queue { count: 0, records: [f32x8::ZERO; LANES], places: [0; LANES] },
-            weights: [[Lanes::ZERO; 2]; SMALL as usize],
-            touches: [Touch::default(); GROUPS],
+            starts: [(0, f32x8::ZERO); SMALL],
+            spans: Spans::NONE,
         }
     }
 
-    /// Draws triangles into a rectangle, one after the other, but for those that are known to be hidden.
-    pub(super) fn draw<'t, S: Shader<N>, I: Iterator<Item = Triangle<'t>>, const N: usize>(
+    /// Draws the triangles of a bin into a tile, one after the other, but for those that are known to be hidden.
+    pub(super) fn draw<S: Shader<N>, const N: usize>(
         &mut self,
         frame: &Frame<'_, S, N>,
+        number: usize,
         rect: Rect,
-        triangles: impl Fn() -> I,
     ) {
         self.rect = rect;
         let may_hide = frame.front.has_large_triangles() && !frame.discards.load(Ordering::Relaxed);
-        self.behind = if may_hide { hidden_behind(frame, triangles(), rect) } else { NOTHING_IS_HIDDEN };
-        self.draw_all(frame, triangles());
+        self.behind = if may_hide { hidden_behind(frame, number, rect) } else { NOTHING_IS_HIDDEN };
+        self.draw_all(frame, number);
         if self.behind < NOTHING_IS_HIDDEN && frame.discards.load(Ordering::Relaxed) {
             // What seemed to cover the tile may have holes: once more, with all triangles. Where the nearest stays, and of
             // equally near ones the last, drawing twice is drawing once.
             self.behind = NOTHING_IS_HIDDEN;
-            self.draw_all(frame, triangles());
+            self.draw_all(frame, number);
         }
     }
 
-    fn draw_all<'t, S: Shader<N>, const N: usize>(
-        &mut self,
-        frame: &Frame<'_, S, N>,
-        triangles: impl Iterator<Item = Triangle<'t>>,
-    ) {
-        // Not `for`: so each chunk's bin has a loop of its own, and triangles stay in registers.
-        triangles.for_each(|triangle| self.draw_triangle(frame, triangle));
+    #[inline(never)]
+    fn draw_all<S: Shader<N>, const N: usize>(&mut self, frame: &Frame<'_, S, N>, number: usize) {
+        frame.front.each_triangle_in(frame.source, number, |triangle| self.draw_triangle(frame, triangle));
         self.flush(frame);
     }
 
     /// Draws a triangle as far as it lies in the tile.
+    #[inline(always)]
     fn draw_triangle<S: Shader<N>, const N: usize>(
         &mut self,
         frame: &Frame<'_, S, N>,
         triangle: Triangle<'_>,
     ) {
-        let Some(area) = bounding_box(triangle.places, self.rect) else { return };
-        let is_small = area.columns().len() <= SMALL as usize && area.rows().len() <= SMALL as usize;
-        let is_narrow = is_narrow(triangle.places);
+        let whole = box_of(triangle.places);
+        let Some(area) = shared(whole, self.rect) else { return };
+        let [width, height] = [whole.right - whole.left, whole.top - whole.bottom];
+        // Values are stepped from the first pixel of a row. It must be in this tile.
+        let is_small = width <= SMALL as i32 && height <= SMALL as i32 && whole.left >= self.rect.left;
         // A record of more than one block does not fit into the queue, and neighbors are needed for derivatives.
-        if is_narrow && is_small && N + 2 <= LANES && !S::USES_DERIVATIVES {
+        if is_small && 2 + N <= LANES && !S::USES_DERIVATIVES {
             self.draw_small(frame, triangle, area);
-        } else if is_narrow {
-            self.draw_narrow(frame, triangle, area);
         } else {
-            self.draw_large(frame, triangle, area);
+            let may_be_hidden =
+                self.behind < NOTHING_IS_HIDDEN && width >= TILE_WIDTH && height >= TILE_HEIGHT;
+            let is_hidden = |coverage| depth_range(&coverage, triangle, area)[0] > self.behind;
+            if !(may_be_hidden && coverage_of(triangle).is_some_and(is_hidden)) {
+                self.draw_spans(frame, triangle, area);
+            }
         }
     }
 
@@ -135,19 +139,21 @@ impl<'a> Tile<'a> {
         triangle: Triangle<'_>,
         area: Rect,
     ) {
-        let [first, second, third] = triangle.records.map(|record| record[0]);
-        let (to_second, to_third) = (second - first, third - first);
-        let setup = Narrow::new(triangle.places, [area.left, area.bottom]);
+        let setup = Small::new(triangle.places, [area.left, area.bottom]);
+        let ways = Ways::<N>::of(triangle);
+        let step = ways.change(setup.weight_step()).first;
+        let starts = &mut self.starts;
+        let mut covered = setup.covered(area, |row, first, weights| {
+            starts[row % SMALL] = (first, ways.at(weights).first);
+        });
         let (corner, width) = (self.band.place([area.left, area.bottom]), self.band.stride);
-        let mut covered = setup.covered(area, &mut self.weights);
         while covered != 0 {
-            let bit = covered.trailing_zeros();
+            let bit = covered.trailing_zeros() as usize;
             covered &= covered - 1;
-            let (row, column) = (bit / 8, bit % 8);
-            let weight =
-                |i: usize| f32x8::splat(self.weights[row as usize][i].as_array_ref()[column as usize]);
-            let record = first + to_second * weight(0) + to_third * weight(1);
-            self.enqueue(frame, record, corner + row as usize * width + column as usize);
+            let (row, column) = (bit / SMALL, bit % SMALL);
+            let (first, start) = self.starts[row];
+            let record = start + step * f32x8::splat(STEPS[column - first]);
+            self.enqueue(frame, record, corner + row * width + column);
         }
     }
 
@@ -188,15 +194,11 @@ impl<'a> Tile<'a> {
         let Merge { depth_test, depth_write, blend } =
             if PLAIN { Merge::default() } else { frame.state.merge };
         let numbers = f32x8::transpose(self.queue.records);
-        let corner = CornerVaryings {
-            distance: numbers[0],
-            depth: numbers[1],
-            values: from_fn(|k| numbers.get(k + 2).copied().unwrap_or(f32x8::ZERO)),
-        };
+        let even = even(|k| numbers.get(k).copied().unwrap_or(f32x8::ZERO));
         let interpolation = if PLAIN { Interpolation::PerspectiveCorrect } else { frame.state.interpolation };
-        let point: Projected<Lanes, N> = corner.multiplied(interpolation);
+        let point: Projected<Lanes, N> = even.multiplied(interpolation);
         let is_linear = PLAIN || frame.state.depth_encoding.is_linear_on_screen();
-        let depths = if is_linear { corner.depth } else { point.w }.to_array();
+        let depths = if is_linear { even.depth } else { point.w }.to_array();
         let shaded: Shaded<Lanes> = frame.shader.fragment(point.values);
         let kept = shaded.keep.bits();
         let opaque = opaque(shaded.color).to_array();
@@ -219,77 +221,23 @@ impl<'a> Tile<'a> {
     // ANCHOR_END: small
 
     // ANCHOR: rows
-    /// Some rows: first which groups of eight are touched, then group by group.
-    fn draw_narrow<S: Shader<N>, const N: usize>(
-        &mut self,
-        frame: &Frame<'_, S, N>,
-        triangle: Triangle<'_>,
-        area: Rect,
-    ) {
-        self.flush(frame);
-        let area = whole_groups(area);
-        let setup = Narrow::new(triangle.places, [area.left, area.bottom]);
-        let part = self.band.part(area);
-        let touched = setup.touched(size_in_groups(area), part.stride, &mut self.touches);
-        if is_plain(frame.state) {
-            draw_touched::<true, S, N>(frame, triangle, &setup, touched, part);
-        } else {
-            draw_touched::<false, S, N>(frame, triangle, &setup, touched, part);
-        }
-    }
-
     /// Many pixels: row by row.
-    fn draw_large<S: Shader<N>, const N: usize>(
+    fn draw_spans<S: Shader<N>, const N: usize>(
         &mut self,
         frame: &Frame<'_, S, N>,
         triangle: Triangle<'_>,
         area: Rect,
     ) {
-        let Some(setup) = Setup::new(triangle.places) else { return };
-        if self.behind < NOTHING_IS_HIDDEN && depth_range(&setup, triangle, area)[0] > self.behind {
-            return;
-        }
         self.flush(frame);
-        let area = whole_groups(area);
-        if setup.misses(area) {
-            // An edge has all of the tile on its wrong side.
-        } else if !setup.is_split_exact(area) {
-            self.draw_groups(frame, triangle, &setup, area, Huge { setup: &setup, area });
-        } else if setup.covers(area) {
-            self.draw_groups(frame, triangle, &setup, area, Split::<true>::new(&setup, area));
-        } else {
-            self.draw_groups(frame, triangle, &setup, area, Split::<false>::new(&setup, area));
-        }
-    }
-
-    fn draw_groups<S: Shader<N>, E: Edges, const N: usize>(
-        &mut self,
-        frame: &Frame<'_, S, N>,
-        triangle: Triangle<'_>,
-        setup: &Setup,
-        area: Rect,
-        edges: E,
-    ) {
-        let part = self.band.part(area);
+        let setup = Setup::new(triangle.places);
+        self.spans.find(&setup, area.rows(), frame.columns);
+        let band = self.band.part(Rect { left: self.band.rect.left, ..area });
         if is_plain(frame.state) {
-            draw_area::<true, S, E, N>(frame, triangle, setup.one_over_area, &edges, part);
+            draw_rows::<true, S, N>(frame, triangle, &setup, &self.spans, area, band);
         } else {
-            draw_area::<false, S, E, N>(frame, triangle, setup.one_over_area, &edges, part);
+            draw_rows::<false, S, N>(frame, triangle, &setup, &self.spans, area, band);
         }
     }
-}
-
-/// The area, as many columns wider as it takes to begin and to end with a group of eight.
-///
-/// No triangle covers pixels outside its area: what is tested there is not covered, or else outside the picture.
-pub(super) fn whole_groups(area: Rect) -> Rect {
-    const SIDE: i32 = LANES as i32;
-    Rect { left: area.left / SIDE * SIDE, right: (area.right + SIDE - 1) / SIDE * SIDE, ..area }
-}
-
-/// How many groups wide and rows high an area of whole groups is.
-pub(super) fn size_in_groups(area: Rect) -> [usize; 2] {
-    [area.columns().len() / LANES, area.rows().len()]
 }
 
 /// Whether all options that matter for a pixel have their default values: the most common case, known at compile time.
@@ -299,85 +247,64 @@ pub(super) fn is_plain(state: &RenderState) -> bool {
         && state.interpolation == Interpolation::PerspectiveCorrect
 }
 
-/// What is the same for all pixels of a triangle.
-struct Brush<const N: usize> {
-    varyings: TriangleVaryings<Lanes, N>,
-    gradients: WeightGradients<Lanes>,
-    one_over_area: Lanes,
-}
-
-impl<const N: usize> Brush<N> {
-    /// Inlined, and called in the functions that draw: made outside of them, it would be copied once more.
-    #[inline(always)]
-    fn new<S: Shader<N>>(frame: &Frame<'_, S, N>, triangle: Triangle<'_>, one_over_area: f32) -> Self {
-        let corners = triangle.records.map(corner_of::<N>);
-        let vertices = triangle.places.map(|place| place.map(i64::from));
-        Self {
-            varyings: TriangleVaryings::between(corners, frame.state.interpolation),
-            gradients: if S::USES_DERIVATIVES { gradients_between(vertices) } else { [[Lanes::ZERO; 2]; 2] },
-            one_over_area: Lanes::splat(one_over_area),
-        }
-    }
-}
-
-/// Draws the groups that a triangle touches.
+/// Draws the rows of a triangle, eight pixels at a time from the first that is covered.
 ///
 /// A function by itself, so that the compiler knows that nothing that is written here changes what is read.
 #[inline(never)]
-fn draw_touched<const PLAIN: bool, S: Shader<N>, const N: usize>(
+fn draw_rows<const PLAIN: bool, S: Shader<N>, const N: usize>(
     frame: &Frame<'_, S, N>,
     triangle: Triangle<'_>,
-    setup: &Narrow,
-    touched: &[Touch],
-    Band { to_next_band, colors, depths, .. }: Band<'_>,
+    setup: &Setup,
+    spans: &Spans,
+    area: Rect,
+    Band { rect, stride, to_next_band, colors, depths }: Band<'_>,
 ) {
-    let brush = &Brush::new(frame, triangle, setup.one_over_area);
-    let mut kept = LaneMask::all(true);
-    for touch in touched {
-        let mask = LaneMask::of_bits(touch.covered);
-        let (colors, depths) = (eight(colors, touch.place), eight(depths, touch.place));
-        fetch_ahead(to_next_band, colors, depths);
-        let keep = draw_group::<PLAIN, S, N>(frame, brush, mask, setup.group(touch), colors, depths);
-        kept = kept.and(keep);
+    let ways = Ways::<N>::of(triangle);
+    let Record { first, more } = ways.change(setup.weight_step());
+    let step = Numbers::of(&first, &more);
+    let gradients = S::USES_DERIVATIVES.then(|| {
+        let gradients = gradients_between(triangle.places.map(|place| place.map(i64::from)));
+        gradients.map(|weights| {
+            let Record { first, more } = ways.change(weights);
+            let change = Numbers::of(&first, &more);
+            even(|k| change.get(k))
+        })
+    });
+    let number = Lanes::new(STEPS);
+    let last = colors.len() - LANES;
+    let mut thrown_away = 0;
+    for row in 0..area.rows().len() {
+        let (first, covered, weights) = spans.row(row, &area.columns());
+        let mut right = Lanes::splat((covered.start - first) as f32) + number;
+        let Record { first, more } = ways.at(weights);
+        let start = Numbers::of(&first, &more);
+        let mut place = row * stride + (covered.start - rect.left) as usize;
+        let mut count = covered.end - covered.start;
+        while count > 0 {
+            let mut covered = ALL >> (LANES as i32 - count).max(0);
+            if place > last {
+                // Less than eight are left of the band: the group begins as many before.
+                let before = (place - last) as i32;
+                covered <<= before;
+                right -= Lanes::splat(before as f32);
+                place = last;
+            }
+            let (colors, depths) = (eight(colors, place), eight(depths, place));
+            fetch_ahead(to_next_band, colors, depths);
+            let number = |k: usize| start.get(k) + step.get(k) * right;
+            thrown_away |= draw_group::<PLAIN, S, N>(frame, number, &gradients, covered, colors, depths);
+            place += LANES;
+            count -= LANES as i32;
+            right += Lanes::splat(LANES as f32);
+        }
     }
-    frame.note(kept);
+    frame.note(thrown_away);
 }
 
 /// The eight pixels from one on.
 #[inline(always)]
 fn eight<T>(pixels: &mut [T], first: usize) -> &mut [T; LANES] {
-    pixels[first..].first_chunk_mut().expect("rows have room for whole groups")
-}
-
-/// Draws the rows of a triangle, eight pixels at a time. A function by itself, as well.
-#[inline(never)]
-fn draw_area<const PLAIN: bool, S: Shader<N>, E: Edges, const N: usize>(
-    frame: &Frame<'_, S, N>,
-    triangle: Triangle<'_>,
-    one_over_area: f32,
-    edges: &E,
-    Band { rect, stride, to_next_band, colors, depths }: Band<'_>,
-) {
-    let brush = &Brush::new(frame, triangle, one_over_area);
-    let mut kept = LaneMask::all(true);
-    let [columns, rows] = size_in_groups(rect);
-    let mut first = edges.first();
-    for (colors, depths) in colors.chunks_mut(stride).zip(depths.chunks_mut(stride)).take(rows) {
-        let mut group = first;
-        let (colors, depths) = (colors.as_chunks_mut().0, depths.as_chunks_mut().0);
-        for (colors, depths) in colors.iter_mut().zip(depths).take(columns) {
-            let mask = edges.covered(&group);
-            if mask.bits() != 0 {
-                fetch_ahead(to_next_band, colors, depths);
-                let values = E::values(&group);
-                let keep = draw_group::<PLAIN, S, N>(frame, brush, mask, values, colors, depths);
-                kept = kept.and(keep);
-            }
-            edges.step_right(&mut group);
-        }
-        edges.step_up(&mut first);
-    }
-    frame.note(kept);
+    pixels[first..].first_chunk_mut().expect("a band has room for eight")
 }
 
 /// Asks for the same place of the next band, which is mostly cleared soon.
@@ -389,62 +316,59 @@ fn fetch_ahead(to_next_band: usize, colors: &[Color; LANES], depths: &[f32; LANE
     prefetch_index(depths, to_next_band);
 }
 
-/// Tests, shades and writes the covered ones of eight neighbors. Which of them the shader keeps.
+/// Tests, shades and writes the covered ones of eight neighbors, a bit for each. Which of them the shader throws away.
 #[inline(always)]
 fn draw_group<const PLAIN: bool, S: Shader<N>, const N: usize>(
     frame: &Frame<'_, S, N>,
-    brush: &Brush<N>,
-    mut mask: LaneMask,
-    values: [Lanes; 2],
+    number: impl Fn(usize) -> Lanes,
+    gradients: &Option<[EvenVaryings<Lanes, N>; 2]>,
+    covered: i32,
     colors: &mut [Color; LANES],
     depths: &mut [f32; LANES],
-) -> LaneMask {
+) -> i32 {
     let (shader, state) = (frame.shader, frame.state);
-    let Brush { varyings, gradients, one_over_area } = brush;
-    let weights = [values[0] * *one_over_area, values[1] * *one_over_area];
     let interpolation = if PLAIN { Interpolation::PerspectiveCorrect } else { state.interpolation };
 
     // Depth first: what is hidden need not be shaded.
     let is_linear = PLAIN || state.depth_encoding.is_linear_on_screen();
-    let depth = if is_linear { varyings.depth_at(weights) } else { varyings.at(weights).w };
+    let depth = if is_linear { number(1) } else { even::<N>(&number).multiplied(interpolation).w };
     let stored = Lanes::new(*depths);
     let test = if PLAIN { DepthTest::LessOrEqual } else { state.merge.depth_test };
-    mask = mask.and(passes(test, depth, stored));
-    if mask.bits() == 0 {
-        return LaneMask::all(true);
+    let seen = covered & passes(test, depth, stored).bits();
+    if seen == 0 {
+        return 0;
     }
 
-    let point = varyings.interpolated(weights, interpolation);
-    let shaded = if S::USES_DERIVATIVES {
-        shader.fragment_with_derivatives(point.values, varyings.derivatives(&point, *gradients))
-    } else {
-        shader.fragment(point.values)
+    let point = even(number).multiplied(interpolation);
+    let shaded = match gradients {
+        Some(gradients) => {
+            let [dx, dy] = gradients.map(|change| change.derivative(&point, interpolation));
+            shader.fragment_with_derivatives(point.values, Derivatives { dx, dy })
+        }
+        None => shader.fragment(point.values),
     };
-    let thrown_away = mask.and(shaded.keep.not());
-    mask = mask.and(shaded.keep);
+    let drawn = seen & shaded.keep.bits();
 
     // Mostly all eight are written. If not, what is there stays in the other lanes.
-    let is_whole = mask.bits() == LaneMask::all(true).bits();
-    if PLAIN || state.merge.depth_write {
-        *depths = if is_whole { depth } else { Lanes::select(mask, depth, stored) }.to_array();
-    }
     let there = i32x8::new(colors.map(|color| color.bits() as i32));
     let blend = if PLAIN { Blend::Opaque } else { state.merge.blend };
-    let words = match blend {
+    let mut words = match blend {
         Blend::Opaque => opaque(shaded.color),
         blend => packed(blend.apply(shaded.color.channels(), Lanes::channels(there))),
     };
-    let words = if is_whole { words } else { mask.choose(words, there) };
+    let mut nearest = depth;
+    if drawn != ALL {
+        let mask = LaneMask::of_bits(drawn);
+        words = mask.choose(words, there);
+        nearest = Lanes::select(mask, depth, stored);
+    }
     *colors = words.to_array().map(|word| Color::from_bits(word as u32));
-    thrown_away.not()
+    if PLAIN || state.merge.depth_write {
+        *depths = nearest.to_array();
+    }
+    seen & !drawn
 }
 // ANCHOR_END: rows
-
-/// What a corner's record holds, the same in all lanes.
-fn corner_of<const N: usize>(record: &[f32x8]) -> CornerVaryings<Lanes, N> {
-    let number = |k: usize| Lanes::splat(record[k / LANES].as_array_ref()[k % LANES]);
-    CornerVaryings { distance: number(0), depth: number(1), values: from_fn(|k| number(k + 2)) }
-}
 
 #[inline(always)]
 fn passes(test: DepthTest, depth: Lanes, stored: Lanes) -> LaneMask {
@@ -452,7 +376,7 @@ fn passes(test: DepthTest, depth: Lanes, stored: Lanes) -> LaneMask {
         DepthTest::Less => depth.is_less(stored),
         DepthTest::LessOrEqual => is_less_or_equal(depth, stored),
         DepthTest::Greater => is_greater(depth, stored),
-        DepthTest::Always => LaneMask::all(true),
+        DepthTest::Always => Mask::all(true),
     }
 }
 

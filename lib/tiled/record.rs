@@ -1,0 +1,94 @@
+//! What corners carry, as records of 1/ω, depth and V/ω: eight numbers of one place at a time, where
+//! [`Lanes`] are one number of eight places.
+
+use std::array::from_fn;
+use std::hint::black_box;
+
+use wide::f32x8;
+
+use super::front::Triangle;
+use crate::lanes::{LANES, Lanes};
+use crate::varyings::EvenVaryings;
+
+/// A record of 2 + N numbers: the first block, and as many more as it takes. (What is too much is never read.)
+#[derive(Clone, Copy)]
+pub(super) struct Record<const N: usize> {
+    pub(super) first: f32x8,
+    pub(super) more: [f32x8; N],
+}
+
+impl<const N: usize> Record<N> {
+    #[inline(always)]
+    fn of(blocks: &[f32x8]) -> Self {
+        let is_used = |i: usize| i * LANES < 2 + N;
+        Self { first: blocks[0], more: from_fn(|i| if is_used(i + 1) { blocks[i + 1] } else { f32x8::ZERO }) }
+    }
+
+    #[inline(always)]
+    fn with(&self, other: &Self, combine: impl Fn(f32x8, f32x8) -> f32x8) -> Self {
+        Self {
+            first: combine(self.first, other.first),
+            more: from_fn(|i| combine(self.more[i], other.more[i])),
+        }
+    }
+}
+
+/// The records of a triangle's corners, made ready for weights, with the same sums in the same order as in
+/// [`TriangleVaryings`](crate::varyings::TriangleVaryings).
+pub(super) struct Ways<const N: usize> {
+    first: Record<N>,
+    to_second: Record<N>,
+    to_third: Record<N>,
+}
+
+impl<const N: usize> Ways<N> {
+    #[inline(always)]
+    pub(super) fn of(triangle: Triangle<'_>) -> Self {
+        let [first, second, third] = triangle.records.map(Record::of);
+        let way = |corner: Record<N>| corner.with(&first, |corner, first| corner - first);
+        Self { first, to_second: way(second), to_third: way(third) }
+    }
+
+    /// Where the second and the third corner have these weights.
+    #[inline(always)]
+    pub(super) fn at(&self, [second, third]: [f32; 2]) -> Record<N> {
+        let [second, third] = [second, third].map(f32x8::splat);
+        let on_the_way = self.first.with(&self.to_second, |first, way| first + way * second);
+        on_the_way.with(&self.to_third, |there, way| there + way * third)
+    }
+
+    /// How much changes where their weights change by so much.
+    #[inline(always)]
+    pub(super) fn change(&self, [second, third]: [f32; 2]) -> Record<N> {
+        let [second, third] = [second, third].map(f32x8::splat);
+        self.to_second.with(&self.to_third, |to_second, to_third| to_second * second + to_third * third)
+    }
+}
+
+/// The numbers of a record, each for all lanes.
+pub(super) struct Numbers<'a, const N: usize> {
+    first: &'a [f32; LANES],
+    more: &'a [f32x8; N],
+}
+
+impl<'a, const N: usize> Numbers<'a, N> {
+    /// By way of memory: taking a number out of a register, for all lanes, would keep those parts of the processor busy that
+    /// the arithmetic needs. It changes nothing but the time.
+    #[inline(always)]
+    pub(super) fn of(first: &'a f32x8, more: &'a [f32x8; N]) -> Self {
+        Self { first: black_box(first.as_array_ref()), more }
+    }
+
+    #[inline(always)]
+    pub(super) fn get(&self, k: usize) -> Lanes {
+        let number =
+            if k < LANES { self.first[k] } else { self.more[k / LANES - 1].as_array_ref()[k % LANES] };
+        Lanes::splat(number)
+    }
+}
+
+/// What stands in a record, by its meaning.
+#[inline(always)]
+pub(super) fn even<const N: usize>(number: impl Fn(usize) -> Lanes) -> EvenVaryings<Lanes, N> {
+    EvenVaryings { distance: number(0), depth: number(1), values: from_fn(|k| number(k + 2)) }
+}
