@@ -65,10 +65,10 @@ pub trait Real:
         row: Self,
         table: impl Fn(usize, usize) -> [f64; C],
     ) -> [Self; C];
-    /// The color in a column and a row (not negative, fractions are cut off) of a plane of colors that is so many columns
-    /// wide. It must be inside the plane: outside, the answer is any color, or a panic.
+    /// The color in a column and a row (not negative, fractions are cut off) of a plane of colors in which a row has 2 to the
+    /// power of `row_bits` places. It must be inside the plane: outside, the answer is any color, or a panic.
     #[must_use]
-    fn look_up_color(column: Self, row: Self, width: u32, colors: &[Color]) -> Self::Colors;
+    fn look_up_color(column: Self, row: Self, row_bits: u32, colors: &[Color]) -> Self::Colors;
     /// The channels of colors, 0..=255.
     #[must_use]
     fn channels(colors: Self::Colors) -> [Self; 3];
@@ -167,10 +167,10 @@ macro_rules! plain_number {
             }
 
             #[inline]
-            fn look_up_color(column: Self, row: Self, width: u32, colors: &[Color]) -> Color {
+            fn look_up_color(column: Self, row: Self, row_bits: u32, colors: &[Color]) -> Color {
                 // A plane has fewer than 2³² columns and rows; from a float, a `u32` is made faster than a `usize`.
                 let [column, row] = [column, row].map(|index| index as u32 as usize);
-                colors[row * width as usize + column]
+                colors[(row << row_bits) + column]
             }
 
             #[inline]

@@ -95,7 +95,9 @@ pub struct Texture {
     rows: f32,
     last_column: f32,
     last_row: f32,
-    /// Shared, so that a copy of a texture costs nothing.
+    /// A row begins 2 to this power texels after the one below it: a place is found by a shift, not by a multiplication.
+    row_bits: u32,
+    /// What is beyond the width is never asked for. Shared, so that a copy of a texture costs nothing.
     texels: Arc<[Color]>,
 }
 
@@ -111,7 +113,9 @@ impl Texture {
         assert!(count > 0 && texels.len() == count, "{width}×{height} texels, but {} given", texels.len());
         let (columns, rows) = (width as f32, height as f32);
         let (last_column, last_row) = (columns - 1.0, rows - 1.0);
-        Self { width, height, columns, rows, last_column, last_row, texels: texels.into() }
+        let row_bits = width.next_power_of_two().trailing_zeros();
+        let texels = with_longer_rows(texels, width as usize, 1 << row_bits).into();
+        Self { width, height, columns, rows, last_column, last_row, row_bits, texels }
     }
 
     /// The 2×2 texture that the book uses up to chapter 10 (Figure 3-10).
@@ -155,7 +159,7 @@ impl Texture {
         let [width, height] = self.size();
         let column = mode.index(u, width, R::from(self.last_column));
         let row = mode.index(v, height, R::from(self.last_row));
-        R::look_up_color(column, row, self.width, &self.texels)
+        R::look_up_color(column, row, self.row_bits, &self.texels)
     }
     // ANCHOR_END: nearest
 
@@ -164,7 +168,7 @@ impl Texture {
     #[inline]
     pub fn bilinear<R: Real>(&self, uv: [R; 2], mode: AddressMode) -> [R; 3] {
         bilinear(uv, self.size(), mode, |column, row| {
-            R::channels(R::look_up_color(column, row, self.width, &self.texels))
+            R::channels(R::look_up_color(column, row, self.row_bits, &self.texels))
         })
     }
 
@@ -176,8 +180,21 @@ impl Texture {
     /// The channels of a texel, in 0..=255.
     #[inline]
     pub(crate) fn texel(&self, column: usize, row: usize) -> [f64; 3] {
-        self.texels[row * self.width as usize + column].to_f64()
+        self.texels[(row << self.row_bits) + column].to_f64()
     }
+}
+
+/// The same texels, in rows that are made longer.
+fn with_longer_rows(texels: Vec<Color>, width: usize, length: usize) -> Vec<Color> {
+    if width == length {
+        return texels;
+    }
+    let mut longer = Vec::with_capacity(texels.len() / width * length);
+    for row in texels.chunks_exact(width) {
+        longer.extend_from_slice(row);
+        longer.resize(longer.len() + length - width, Color::BLACK);
+    }
+    longer
 }
 
 // ANCHOR: bilinear
@@ -221,6 +238,20 @@ mod tests {
         assert_eq!(at(0.75, 0.75), Color::rgb(255, 123, 172));
         assert_eq!(at(0.5, 0.5), Color::rgb(255, 123, 172), "the middle belongs to the upper right texel");
         assert_eq!(at(1.0, 1.0), at(0.75, 0.75), "u = 1 is the last column");
+    }
+
+    #[test]
+    fn rows_of_any_length() {
+        for width in 1..=9_u8 {
+            let texels = (0..2 * width).map(Color::gray).collect();
+            let texture = Texture::new(width.into(), 2, texels);
+            for (row, column) in (0..2).flat_map(|row| (0..width).map(move |column| (row, column))) {
+                let uv = [(f64::from(column) + 0.5) / f64::from(width), f64::from(row) * 0.5 + 0.25];
+                let expected = Color::gray(row * width + column);
+                assert_eq!(Color::truncated(texture.nearest(uv, AddressMode::Clamp)), expected);
+                assert_eq!(texture.texel(column.into(), row.into()), expected.to_f64());
+            }
+        }
     }
 
     #[test]
