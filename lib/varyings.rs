@@ -120,9 +120,7 @@ impl<R: Real, const N: usize> EvenVaryings<R, N> {
             }
         }
     }
-}
 
-impl<R: Real, const N: usize> EvenVaryings<R, N> {
     /// How the varyings change at a point, if this is how they change evenly from there to the next pixel.
     ///
     /// From V = (V/ω) / (1/ω) by the quotient rule: ∂V = ω (∂(V/ω) − V ∂(1/ω)).

@@ -20,7 +20,7 @@ use rasterbook::transform::Viewport;
 use rasterbook::{Color, Framebuffer};
 use targets::assert_same;
 
-/// Six columns and three rows of tiles, the last ones not whole. Once the rows are whole groups of eight, once not.
+/// Six columns and three rows of tiles, the last ones not whole. Once the width is a multiple of eight, once not.
 const SIZES: [(u32, u32); 2] = [(728, 90), (725, 90)];
 
 /// All in one color.

@@ -190,7 +190,7 @@ fn mode() -> impl Strategy<Value = AddressMode> {
     prop_oneof![Just(AddressMode::Clamp), Just(AddressMode::Repeat), Just(AddressMode::Mirror)]
 }
 
-/// Up to four columns and four rows of tiles; once the rows are whole groups of eight, once mostly not.
+/// Up to four columns and four rows of tiles; of all widths, and often a multiple of eight.
 fn size() -> impl Strategy<Value = (u32, u32)> {
     let groups = (1_u32..50).prop_map(|groups| 8 * groups);
     prop_oneof![
@@ -282,6 +282,50 @@ fn odd_sizes_and_nothing_to_draw() {
         compare(&some, &busy(AddressMode::Clamp, false), &RenderState::default(), size);
         compare(&none, &busy(AddressMode::Clamp, false), &RenderState::default(), size);
     }
+}
+
+#[test]
+fn pictures_narrower_than_a_group() {
+    let some = crowd(300, 12);
+    for size in [(1, 40), (3, 2), (2, 33), (4, 40), (5, 70), (7, 64), (7, 1)] {
+        compare(&some, &busy(AddressMode::Clamp, false), &RenderState::default(), size);
+        compare(&some, &Sloped(busy(AddressMode::Clamp, false)), &RenderState::default(), size);
+    }
+}
+
+/// As many varyings as one likes, all of which have a part in the color.
+struct Many<const N: usize, const IS_SLOPED: bool>;
+
+impl<const N: usize, const IS_SLOPED: bool> Shader<N> for Many<N, IS_SLOPED> {
+    type Attributes = Record;
+    const USES_DERIVATIVES: bool = IS_SLOPED;
+
+    fn vertex(&self, &(position, values): &Record) -> ClipVertex<N> {
+        ClipVertex { position, varyings: from_fn(|k| values[k % 5] / (k + 1) as f64) }
+    }
+
+    fn fragment<R: Real>(&self, varyings: [R; N]) -> Shaded<R> {
+        let sum =
+            |from: usize| varyings.iter().skip(from).step_by(3).fold(R::of(0.0), |sum, &value| sum + value);
+        Shaded::opaque(from_fn(sum))
+    }
+
+    fn fragment_with_derivatives<R: Real>(&self, varyings: [R; N], change: Derivatives<R, N>) -> Shaded<R> {
+        self.fragment(from_fn(|k| varyings[k] + change.dx[k] * R::of(3.0) - change.dy[k]))
+    }
+}
+
+#[test]
+fn any_number_of_varyings() {
+    fn check<const N: usize>(mesh: &Mesh<Record>) {
+        compare(mesh, &Many::<N, false>, &RenderState::default(), (150, 90));
+        compare(mesh, &Many::<N, true>, &RenderState::default(), (150, 90));
+    }
+    let mesh = crowd(400, 13);
+    check::<0>(&mesh);
+    check::<6>(&mesh);
+    check::<7>(&mesh);
+    check::<15>(&mesh);
 }
 
 #[test]
@@ -453,7 +497,6 @@ fn layers_in_any_order() {
         let depths: Vec<f64> = (0..1 + round % 12).map(|_| (next() * 8.0).floor() / 10.0 - 0.4).collect();
         let mesh = layers(&depths, &mut next);
         let state = RenderState { load: LoadOp::Clear, ..RenderState::default() };
-        // Rows of whole groups of eight, and others.
         for size in [(328, 131), (333, 131)] {
             compare(&mesh, &Counted::default(), &state, size);
             compare(&mesh, &Counted { has_holes: true, ..Counted::default() }, &state, size);
@@ -481,6 +524,22 @@ fn layers_with_holes_on_what_was_there() {
         };
         assert_same(&both(Some(&Tiled::new())), &both(None));
     }
+}
+
+#[test]
+fn a_small_triangle_with_a_hole_in_a_tile_of_one_pixel_hides_nothing() {
+    let (width, height) = (129, 33);
+    let mut records: Vec<Record> = Vec::new();
+    let mut add = |corners: [(f64, f64); 3], depth: f64, color: f64, from_hole: f64| {
+        let values = [color, color, color, from_hole, from_hole];
+        records.extend(corners.map(|(x, y)| (dvec4(x, y, depth, 1.0), values)));
+    };
+    add([(-1.0, -1.0), (5.0, -1.0), (-1.0, 5.0)], 0.5, 200.0, 5.0);
+    // All of it is thrown away.
+    add([(0.985, 0.95), (1.05, 0.95), (0.985, 1.3)], 0.0, 100.0, 0.0);
+    let mesh = Mesh::unindexed(records).expect("whole triangles");
+    let shader = Counted { has_holes: true, ..Counted::default() };
+    compare(&mesh, &shader, &RenderState { load: LoadOp::Clear, ..RenderState::default() }, (width, height));
 }
 
 #[test]

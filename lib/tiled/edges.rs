@@ -13,6 +13,9 @@ use crate::lanes::Lanes;
 
 const PIXEL: i32 = SUBPIXELS as i32;
 
+/// 1.5 · 2⁵²: a sum with it has no room for fractions, and its last bits are the nearest whole number.
+pub(super) const NO_FRACTIONS: f64 = 6_755_399_441_055_744.0;
+
 /// The cross product of two places, seen from the origin: the edge function there of the edge between them.
 #[inline(always)]
 fn cross<T: Copy + std::ops::Mul<Output = T> + std::ops::Sub<Output = T>>(a: [T; 2], b: [T; 2]) -> T {
@@ -62,6 +65,8 @@ impl Setup {
         // Seen so that the triangle is on the left of each.
         let (sign, pixel) = (f64x4::splat(area.signum()), f64x4::splat(f64::from(PIXEL) * area.signum()));
         let (origin, right, up) = (origin * sign, (from[1] - to[1]) * pixel, (to[0] - from[0]) * pixel);
+        // A whole number has one zero only, which is positive.
+        let (origin, right) = (origin + zero, right + zero);
 
         let (grows, is_level, step) = (right.cmp_gt(zero), right.cmp_eq(zero), right.abs());
         let is_top_left = grows | (is_level & up.cmp_lt(zero));
@@ -87,7 +92,7 @@ impl Setup {
 }
 
 const ROWS: usize = TILE_HEIGHT as usize;
-/// So many rows are reckoned at a time.
+/// So many rows are computed at a time.
 const AT_A_TIME: usize = 4;
 
 /// The covered pixels of some rows: in each row they lie side by side.
@@ -121,8 +126,8 @@ impl Spans {
                 end = end.fast_min(column + of_edge(&setup.no_end, i));
                 *above += of_edge(&next_above, i);
             }
-            let first = whole(first.fast_min(rightmost), &mut self.first[row..]);
-            whole(end.fast_max(leftmost), &mut self.end[row..]);
+            let first = whole_below(first.fast_min(rightmost), &mut self.first[row..]);
+            whole_below(end.fast_max(leftmost), &mut self.end[row..]);
             for i in [1, 2] {
                 let value = (values[i] + of_edge(&setup.right, i) * first).to_array();
                 for (weight, value) in self.weights[i - 1][row..].iter_mut().zip(value) {
@@ -133,7 +138,7 @@ impl Spans {
         }
     }
 
-    /// The first column of a row; which columns from `left` to `right` are covered; and the weights in the first.
+    /// The first covered column of a row; which of some columns are covered; and the weights in the first.
     #[inline(always)]
     pub(super) fn row(&self, row: usize, columns: &Range<i32>) -> (i32, Range<i32>, [f32; 2]) {
         let first = self.first[row];
@@ -142,16 +147,15 @@ impl Spans {
     }
 }
 
-/// Rounds down to whole numbers, which must be between 0 and 2³¹ and not be whole already.
+/// Rounds numbers down that are between 0 and 2³¹ and not whole.
 #[inline(always)]
-fn whole(numbers: f64x4, list: &mut [i32]) -> f64x4 {
-    // 1.5 · 2⁵²: the sum has no room for fractions, and its last bits are the whole number nearest to what was half less.
-    let magic = f64x4::splat(6_755_399_441_055_744.0);
-    let sum = (numbers - f64x4::splat(0.5)) + magic;
+fn whole_below(numbers: f64x4, list: &mut [i32]) -> f64x4 {
+    // To the nearest of what is half less. The last bits of the sum are the whole number.
+    let sum = (numbers - f64x4::HALF) + f64x4::splat(NO_FRACTIONS);
     for (place, sum) in list.iter_mut().zip(sum.to_array()) {
         *place = sum.to_bits() as i32;
     }
-    sum - magic
+    sum - f64x4::splat(NO_FRACTIONS)
 }
 // ANCHOR_END: spans
 
@@ -268,7 +272,8 @@ mod tests {
             let setup = Setup::new(places);
             let mut spans = Spans::NONE;
             spans.find(&setup, rows.clone(), COLUMNS);
-            prop_assert_eq!(setup.weight_step(), coverage.weight_step::<f32>());
+            let bits = |weights: [f32; 2]| weights.map(f32::to_bits);
+            prop_assert_eq!(bits(setup.weight_step()), bits(coverage.weight_step()));
             for (row, y) in rows.enumerate() {
                 let expected = coverage.covered_columns(0..COLUMNS, y);
                 let (first, covered, weights) = spans.row(row, &(0..COLUMNS));
@@ -276,7 +281,8 @@ mod tests {
                 if !covered.is_empty() {
                     prop_assert_eq!(&covered, &expected);
                     prop_assert_eq!(first, covered.start);
-                    prop_assert_eq!(weights, coverage.weights::<f32>(coverage.edge_values(center(first, y))));
+                    let expected = coverage.weights(coverage.edge_values(center(first, y)));
+                    prop_assert_eq!(bits(weights), bits(expected));
                 }
             }
         }

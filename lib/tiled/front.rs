@@ -8,6 +8,7 @@ use glam::DVec4;
 use rayon::prelude::*;
 use wide::{CmpGe, f32x8, f64x4};
 
+use super::edges::NO_FRACTIONS;
 use super::{TILE_HEIGHT, TILE_WIDTH, tiles_of};
 use crate::Rect;
 use crate::area::Winding;
@@ -313,11 +314,10 @@ impl Context<'_> {
 
 /// A whole number of at most 31 bits and a sign, such as `snapped` gives (25 bits), as an integer.
 ///
-/// 1.5 · 2⁵² has no room for fractions: added to it, the number stands in the lowest bits. One addition, where `as` asks
-/// first whether the number fits.
+/// One addition, where `as` asks first whether the number fits.
 #[inline]
 fn whole(number: f64) -> i32 {
-    (number + 6_755_399_441_055_744.0).to_bits() as i32
+    (number + NO_FRACTIONS).to_bits() as i32
 }
 
 fn write_record<const N: usize>(vertex: &NdcVertex<N>, interpolation: Interpolation, record: &mut [f32x8]) {
@@ -418,8 +418,6 @@ fn signed_area([a, b, c]: [Place; 3]) -> i64 {
     difference(b, 0) * difference(c, 1) - difference(b, 1) * difference(c, 0)
 }
 
-/// The pixels of the window whose centers lie in the bounding box; `None` if there are none.
-///
 /// The pixels whose centers lie in the bounding box of a triangle, in the picture or not.
 ///
 /// As [`Coverage::bounding_box`](crate::edge::Coverage::bounding_box), but in the 32 bits that places have here: it is

@@ -84,7 +84,7 @@ use background::Background;
 use front::{Front, Source};
 use tile::{Frame, Tile};
 
-/// The width of a tile in pixels, a multiple of the lanes.
+/// The width of a tile in pixels.
 const TILE_WIDTH: i32 = 128;
 /// The height of a tile in pixels.
 const TILE_HEIGHT: i32 = 32;
@@ -176,7 +176,7 @@ fn each_band(
     });
 }
 
-/// The rows of a picture in which a row of tiles lies, or a copy of one tile, or a part of these.
+/// The rows of a picture in which a row of tiles lies, or a copy of them if they are very short.
 struct Band<'a> {
     /// Its lower left pixel is the first of colors and depths.
     rect: Rect,
@@ -237,13 +237,6 @@ impl Band<'_> {
             let start = first + row * stride;
             start..start + rect.columns().len()
         })
-    }
-
-    /// A rectangle of it.
-    fn part(&mut self, rect: Rect) -> Band<'_> {
-        let first = self.place([rect.left, rect.bottom]);
-        let (colors, depths) = (&mut self.colors[first..], &mut self.depths[first..]);
-        Band { rect, stride: self.stride, to_next_band: self.to_next_band, colors, depths }
     }
 }
 

@@ -1,7 +1,8 @@
 //! What is hidden in all of a tile need not be drawn there.
 
+use super::edges::SMALL;
 use super::front::{Triangle, box_of, shared};
-use super::tile::{Frame, is_plain};
+use super::tile::{Frame, is_at_most, is_plain};
 use crate::Rect;
 use crate::edge::{Coverage, Subpixel, center};
 use crate::shader::Shader;
@@ -35,7 +36,11 @@ pub(super) fn hidden_behind<S: Shader<N>, const N: usize>(
         return behind;
     }
     frame.front.each_triangle_in(frame.source, number, |triangle| {
-        if shared(box_of(triangle.places), tile) == Some(tile)
+        let whole = box_of(triangle.places);
+        // What goes through the queue is not noted if the shader throws it away.
+        let is_large = !is_at_most(whole, SMALL as i32);
+        if is_large
+            && shared(whole, tile) == Some(tile)
             && let Some(coverage) = coverage_of(triangle)
             && corners(tile).into_iter().all(|corner| coverage.covers(coverage.edge_values(corner)))
         {

@@ -9,7 +9,7 @@ use super::edges::{SMALL, Setup, Small, Spans};
 use super::front::{Front, Source, Triangle, box_of, shared};
 use super::occlusion::{NOTHING_IS_HIDDEN, coverage_of, depth_range, hidden_behind};
 use super::record::{Numbers, Record, Ways, even};
-use super::{Band, TILE_HEIGHT, TILE_WIDTH};
+use super::{Band, TILE_HEIGHT};
 use crate::depth::DepthTest;
 use crate::edge::gradients_between;
 use crate::interpolate::{Interpolation, Projected};
@@ -115,15 +115,13 @@ impl<'a> Tile<'a> {
     ) {
         let whole = box_of(triangle.places);
         let Some(area) = shared(whole, self.rect) else { return };
-        let [width, height] = [whole.right - whole.left, whole.top - whole.bottom];
         // Values are stepped from the first pixel of a row. It must be in this tile.
-        let is_small = width <= SMALL as i32 && height <= SMALL as i32 && whole.left >= self.rect.left;
-        // A record of more than one block does not fit into the queue, and neighbors are needed for derivatives.
+        let is_small = is_at_most(whole, SMALL as i32) && whole.left >= self.rect.left;
+        // A record of more than one block does not fit into the queue, nor do the gradients of a triangle.
         if is_small && 2 + N <= LANES && !S::USES_DERIVATIVES {
             self.draw_small(frame, triangle, area);
         } else {
-            let may_be_hidden =
-                self.behind < NOTHING_IS_HIDDEN && width >= TILE_WIDTH && height >= TILE_HEIGHT;
+            let may_be_hidden = self.behind < NOTHING_IS_HIDDEN && !is_at_most(whole, TILE_HEIGHT);
             let is_hidden = |coverage| depth_range(&coverage, triangle, area)[0] > self.behind;
             if !(may_be_hidden && coverage_of(triangle).is_some_and(is_hidden)) {
                 self.draw_spans(frame, triangle, area);
@@ -231,13 +229,18 @@ impl<'a> Tile<'a> {
         self.flush(frame);
         let setup = Setup::new(triangle.places);
         self.spans.find(&setup, area.rows(), frame.columns);
-        let band = self.band.part(Rect { left: self.band.rect.left, ..area });
         if is_plain(frame.state) {
-            draw_rows::<true, S, N>(frame, triangle, &setup, &self.spans, area, band);
+            draw_rows::<true, S, N>(frame, triangle, &setup, &self.spans, area, &mut self.band);
         } else {
-            draw_rows::<false, S, N>(frame, triangle, &setup, &self.spans, area, band);
+            draw_rows::<false, S, N>(frame, triangle, &setup, &self.spans, area, &mut self.band);
         }
     }
+}
+
+/// Whether a rectangle is no larger than a square.
+#[inline(always)]
+pub(super) fn is_at_most(Rect { left, bottom, right, top }: Rect, side: i32) -> bool {
+    right - left <= side && top - bottom <= side
 }
 
 /// Whether all options that matter for a pixel have their default values: the most common case, known at compile time.
@@ -257,42 +260,44 @@ fn draw_rows<const PLAIN: bool, S: Shader<N>, const N: usize>(
     setup: &Setup,
     spans: &Spans,
     area: Rect,
-    Band { rect, stride, to_next_band, colors, depths }: Band<'_>,
+    band: &mut Band<'_>,
 ) {
+    let (bottom_left, stride, to_next_band) =
+        (band.place([area.left, area.bottom]), band.stride, band.to_next_band);
+    let (colors, depths) = (&mut *band.colors, &mut *band.depths);
     let ways = Ways::<N>::of(triangle);
-    let Record { first, more } = ways.change(setup.weight_step());
-    let step = Numbers::of(&first, &more);
+    let Record { first: block, more } = ways.change(setup.weight_step());
+    let step = Numbers::of(&block, &more);
     let gradients = S::USES_DERIVATIVES.then(|| {
         let gradients = gradients_between(triangle.places.map(|place| place.map(i64::from)));
         gradients.map(|weights| {
-            let Record { first, more } = ways.change(weights);
-            let change = Numbers::of(&first, &more);
+            let Record { first: block, more } = ways.change(weights);
+            let change = Numbers::of(&block, &more);
             even(|k| change.get(k))
         })
     });
-    let number = Lanes::new(STEPS);
     let last = colors.len() - LANES;
     let mut thrown_away = 0;
     for row in 0..area.rows().len() {
         let (first, covered, weights) = spans.row(row, &area.columns());
-        let mut right = Lanes::splat((covered.start - first) as f32) + number;
-        let Record { first, more } = ways.at(weights);
-        let start = Numbers::of(&first, &more);
-        let mut place = row * stride + (covered.start - rect.left) as usize;
+        let Record { first: block, more } = ways.at(weights);
+        let start = Numbers::of(&block, &more);
+        let mut right = Lanes::splat((covered.start - first) as f32) + Lanes::new(STEPS);
+        let mut place = bottom_left + row * stride + (covered.start - area.left) as usize;
         let mut count = covered.end - covered.start;
         while count > 0 {
-            let mut covered = ALL >> (LANES as i32 - count).max(0);
+            let mut bits = ALL >> (LANES as i32 - count).max(0);
             if place > last {
-                // Less than eight are left of the band: the group begins as many before.
+                // Fewer than eight are left of the band: the group begins as many before.
                 let before = (place - last) as i32;
-                covered <<= before;
+                bits <<= before;
                 right -= Lanes::splat(before as f32);
                 place = last;
             }
             let (colors, depths) = (eight(colors, place), eight(depths, place));
             fetch_ahead(to_next_band, colors, depths);
             let number = |k: usize| start.get(k) + step.get(k) * right;
-            thrown_away |= draw_group::<PLAIN, S, N>(frame, number, &gradients, covered, colors, depths);
+            thrown_away |= draw_group::<PLAIN, S, N>(frame, number, &gradients, bits, colors, depths);
             place += LANES;
             count -= LANES as i32;
             right += Lanes::splat(LANES as f32);
