@@ -13,7 +13,7 @@ use super::{TILE_HEIGHT, TILE_WIDTH, tiles_of};
 use crate::Rect;
 use crate::area::Winding;
 use crate::clip::{ClipTest, ClipVertex, NdcVertex, Plane, clip_triangle, fan};
-use crate::edge::{SUBPIXELS, snapped};
+use crate::edge::{SUBPIXELS, Subpixel, snapped};
 use crate::exact::{cut_to_guard_band, is_in_guard_band};
 use crate::interpolate::Interpolation;
 use crate::lanes::LANES;
@@ -86,6 +86,13 @@ pub(super) struct Front {
 pub(super) struct Triangle<'a> {
     pub(super) places: [Place; 3],
     pub(super) records: [&'a [f32x8]; 3],
+}
+
+impl Triangle<'_> {
+    /// The places, as [`edge`](crate::edge) knows them.
+    pub(super) fn vertices(&self) -> [Subpixel; 3] {
+        self.places.map(|place| place.map(i64::from))
+    }
 }
 
 /// What is the same for all vertices and triangles of a picture.
@@ -432,6 +439,12 @@ pub(super) fn box_of([a, b, c]: [Place; 3]) -> Rect {
     };
     let ((left, right), (bottom, top)) = (range(0), range(1));
     Rect { left, bottom, right, top }
+}
+
+/// Whether a rectangle is no larger than a square.
+#[inline(always)]
+pub(super) fn is_at_most(Rect { left, bottom, right, top }: Rect, side: i32) -> bool {
+    right - left <= side && top - bottom <= side
 }
 
 /// What two rectangles share, if anything.

@@ -1,8 +1,8 @@
 //! What is hidden in all of a tile need not be drawn there.
 
 use super::edges::SMALL;
-use super::front::{Triangle, box_of, shared};
-use super::tile::{Frame, is_at_most, is_plain};
+use super::front::{Triangle, box_of, is_at_most, shared};
+use super::tile::{Frame, is_plain};
 use crate::Rect;
 use crate::edge::{Coverage, Subpixel, center};
 use crate::shader::Shader;
@@ -57,7 +57,7 @@ fn corners(Rect { left, bottom, right, top }: Rect) -> [Subpixel; 4] {
 
 /// A triangle that has been snapped; `None` without area.
 pub(super) fn coverage_of(triangle: Triangle<'_>) -> Option<Coverage> {
-    Coverage::of(triangle.places.map(|place| place.map(i64::from)))
+    Coverage::of(triangle.vertices())
 }
 
 /// The least and the greatest depth that a triangle can have in a rectangle, with room for rounding.

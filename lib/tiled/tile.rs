@@ -6,7 +6,7 @@ use prefetch_index::prefetch_index;
 use wide::{f32x8, i32x8};
 
 use super::edges::{SMALL, Setup, Small, Spans};
-use super::front::{Front, Source, Triangle, box_of, shared};
+use super::front::{Front, Source, Triangle, box_of, is_at_most, shared};
 use super::occlusion::{NOTHING_IS_HIDDEN, coverage_of, depth_range, hidden_behind};
 use super::record::{Numbers, Record, Ways, even};
 use super::{Band, TILE_HEIGHT};
@@ -237,12 +237,6 @@ impl<'a> Tile<'a> {
     }
 }
 
-/// Whether a rectangle is no larger than a square.
-#[inline(always)]
-pub(super) fn is_at_most(Rect { left, bottom, right, top }: Rect, side: i32) -> bool {
-    right - left <= side && top - bottom <= side
-}
-
 /// Whether all options that matter for a pixel have their default values: the most common case, known at compile time.
 pub(super) fn is_plain(state: &RenderState) -> bool {
     state.merge == Merge::default()
@@ -269,7 +263,7 @@ fn draw_rows<const PLAIN: bool, S: Shader<N>, const N: usize>(
     let Record { first: block, more } = ways.change(setup.weight_step());
     let step = Numbers::of(&block, &more);
     let gradients = S::USES_DERIVATIVES.then(|| {
-        let gradients = gradients_between(triangle.places.map(|place| place.map(i64::from)));
+        let gradients = gradients_between(triangle.vertices());
         gradients.map(|weights| {
             let Record { first: block, more } = ways.change(weights);
             let change = Numbers::of(&block, &more);
