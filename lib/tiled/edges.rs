@@ -3,13 +3,14 @@
 use std::array::from_fn;
 use std::ops::Range;
 
-use wide::{CmpEq, CmpGt, CmpLt, f64x4, i32x8};
+use bytemuck::cast;
+use wide::{CmpEq, CmpGt, CmpLt, f64x4, i16x8, i32x8};
 
 use super::TILE_HEIGHT;
 use super::front::Place;
 use crate::Rect;
 use crate::edge::{SUBPIXELS, is_top_left};
-use crate::lanes::Lanes;
+use crate::lanes::{LANES, Lanes};
 
 const PIXEL: i32 = SUBPIXELS as i32;
 
@@ -163,17 +164,23 @@ fn whole_below(numbers: f64x4, list: &mut [i32]) -> f64x4 {
 /// How wide and high a small triangle is at most: then its coverage fits into 64 bits.
 pub(super) const SMALL: usize = 8;
 
-/// The three edges of a small triangle, in 32-bit integers.
+/// The three edges of a small triangle.
+///
+/// All numbers are whole, and less than 2²⁴ in any of 8 × 8 pixels of which the first lies in the triangle's box: exact in
+/// `f32`.
 pub(super) struct Small {
-    /// The values at the first center.
-    start: [i32; 3],
+    /// The edge functions at the first center.
+    start: [f32; 3],
     /// How they change from pixel to pixel, to the right and upwards.
-    right: [i32; 3],
-    up: [i32; 3],
-    /// What is taken off a value so that "not negative" means covered: 1 on edges that are neither top nor left.
-    shy: [i32; 3],
+    right: [f32; 3],
+    up: [f32; 3],
+    /// What keeps a tie out: 1 on edges that are neither top nor left.
+    shy: [f32; 3],
     one_over_area: f32,
 }
+
+/// Steps from the first of eight pixels, as factors.
+pub(super) const STEPS: [f32; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 
 impl Small {
     /// The edges, seen from the center of a pixel. Inlined, so that the places stay in registers.
@@ -189,10 +196,10 @@ impl Small {
         let right = edges.map(|[from, to]| (from[1] - to[1]) * sign);
         let up = edges.map(|[from, to]| (to[0] - from[0]) * sign);
         Self {
-            start: start.map(|value| value * sign),
-            right: right.map(|step| step * PIXEL),
-            up: up.map(|step| step * PIXEL),
-            shy: from_fn(|i| i32::from(!is_top_left(right[i], up[i]))),
+            start: start.map(|value| (value * sign) as f32),
+            right: right.map(|step| (step * PIXEL) as f32),
+            up: up.map(|step| (step * PIXEL) as f32),
+            shy: from_fn(|i| f32::from(u8::from(!is_top_left(right[i], up[i])))),
             one_over_area: 1.0 / (area.abs() as f32),
         }
     }
@@ -200,31 +207,39 @@ impl Small {
     /// How much more the second and the third vertex weigh one pixel farther to the right.
     #[inline(always)]
     pub(super) fn weight_step(&self) -> [f32; 2] {
-        [1, 2].map(|i| self.right[i] as f32 * self.one_over_area)
+        [1, 2].map(|i| self.right[i] * self.one_over_area)
     }
 
-    /// Which pixels of an area of at most 8 × 8 are covered: a bit each, eight for a row. Tells of each row the number, the
-    /// first covered column, and how much the second and the third vertex weigh there.
+    /// Which pixels of an area are covered: a bit each, eight for a row.
     #[inline(always)]
-    pub(super) fn covered(&self, area: Rect, mut row: impl FnMut(usize, usize, [f32; 2])) -> u64 {
+    pub(super) fn covered(&self, area: Rect) -> u64 {
         let columns = (1_u64 << area.columns().len()) - 1;
-        let number = i32x8::new([0, 1, 2, 3, 4, 5, 6, 7]);
-        let (shy, one_over_area) = (self.shy.map(i32x8::splat), Lanes::splat(self.one_over_area));
-        let mut values: [i32x8; 3] =
-            from_fn(|i| i32x8::splat(self.start[i] - self.shy[i]) + i32x8::splat(self.right[i]) * number);
+        let mut values: [Lanes; 3] = from_fn(|i| {
+            Lanes::splat(self.start[i] - self.shy[i]) + Lanes::splat(self.right[i]) * Lanes::new(STEPS)
+        });
         let mut covered = 0;
         for y in 0..area.rows().len() {
             // None of the three values says, by its sign, that the pixel is outside.
             let outside = (values[0] | values[1] | values[2]).move_mask() as u8;
-            let bits = u64::from(!outside) & columns;
-            covered |= bits << (SMALL * y);
-            let first = (bits | 1 << (SMALL - 1)).trailing_zeros() as usize;
-            // What keeps ties out does not belong to the value.
-            let weights = [1, 2].map(|i| (values[i] + shy[i]).round_float() * one_over_area);
-            row(y, first, weights.map(|weights| weights.as_array_ref()[first % SMALL]));
-            values = from_fn(|i| values[i] + i32x8::splat(self.up[i]));
+            covered |= (u64::from(!outside) & columns) << (SMALL * y);
+            values = from_fn(|i| values[i] + Lanes::splat(self.up[i]));
         }
         covered
+    }
+
+    /// The first covered column of each row, if there is one, and how much the second and the third vertex weigh there.
+    #[inline(always)]
+    pub(super) fn starts(&self, covered: u64) -> ([i32; SMALL], [[f32; SMALL]; 2]) {
+        let rows = i16x8::from_u8x16_low(cast([covered, 0]));
+        // The exponent of a power of two is the number of its bit.
+        let lowest: Lanes = i32x8::from_i16x8(rows & -rows).round_float();
+        let columns: i32x8 = (cast::<Lanes, i32x8>(lowest) >> 23) - i32x8::splat(127);
+        let weights = [1, 2].map(|i| {
+            let [start, right, up] = [self.start, self.right, self.up].map(|edges| Lanes::splat(edges[i]));
+            let value = start + right * columns.round_float() + up * Lanes::new(STEPS);
+            (value * Lanes::splat(self.one_over_area)).to_array()
+        });
+        (columns.to_array(), weights)
     }
 }
 // ANCHOR_END: small
@@ -233,7 +248,7 @@ impl Small {
 mod tests {
     use super::*;
     use crate::edge::{Coverage, center};
-    use crate::tiled::front::{box_of, shared};
+    use crate::tiled::front::{box_of, is_at_most, shared};
     use proptest::prelude::*;
 
     const COLUMNS: i32 = 20_000;
@@ -288,21 +303,32 @@ mod tests {
         }
 
         #[test]
-        fn small_triangles_are_exact(places in prop::array::uniform3([0..1800, 0..1800]), origin in -3..900, grid in prop_oneof![Just(1), Just(128)]) {
+        fn small_triangles_are_exact(
+            places in prop::array::uniform3([0..2304, 0..2304]),
+            origin in -3..900,
+            grid in prop_oneof![Just(1), Just(128)],
+            below in 0..8_i32,
+        ) {
             let places = places.map(|place| place.map(|along| (origin * 256 + along) / grid * grid));
             let Some(coverage) = Coverage::of(places.map(|place| place.map(i64::from))) else { return Ok(()) };
-            let Some(area) = shared(box_of(places), Rect::sized(2000, 2000)) else { return Ok(()) };
+            let whole = box_of(places);
+            prop_assume!(is_at_most(whole, SMALL as i32));
+            // Rows may be missing below, which belong to another tile.
+            let window = Rect { bottom: i32::max(whole.bottom + below, 0), ..Rect::sized(2000, 2000) };
+            let Some(area) = shared(whole, window) else { return Ok(()) };
             let small = Small::new(places, [area.left, area.bottom]);
             prop_assert_eq!(small.weight_step(), coverage.weight_step::<f32>());
-            let mut rows = Vec::new();
-            let covered = small.covered(area, |row, first, weights| rows.push((row, first, weights)));
+            let covered = small.covered(area);
+            let (columns, weights) = small.starts(covered);
             for (row, y) in area.rows().enumerate() {
                 let expected = coverage.covered_columns(area.columns(), y);
                 let bits = expected.clone().fold(0, |bits, x| bits | 1_u64 << (x - area.left));
                 prop_assert_eq!(covered >> (8 * row) & 0xFF, bits);
                 if !expected.is_empty() {
-                    let weights = coverage.weights::<f32>(coverage.edge_values(center(expected.start, y)));
-                    prop_assert_eq!(rows[row], (row, (expected.start - area.left) as usize, weights));
+                    let expected_weights = coverage.weights::<f32>(coverage.edge_values(center(expected.start, y)));
+                    prop_assert_eq!(columns[row], expected.start - area.left);
+                    let bits = |weights: [f32; 2]| weights.map(f32::to_bits);
+                    prop_assert_eq!(bits(weights.map(|weights| weights[row])), bits(expected_weights));
                 }
             }
         }

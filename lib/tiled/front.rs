@@ -78,7 +78,6 @@ const CHUNK: usize = 4096;
 pub(super) struct Front {
     vertices: Vertices,
     chunks: Vec<Chunk>,
-    blocks: usize,
 }
 
 /// A triangle as a tile needs it.
@@ -124,11 +123,10 @@ impl Front {
             viewport: state.viewport_in(window),
             window,
             planes,
-            blocks: (N + 2).div_ceil(LANES),
+            blocks: blocks_of(N),
             columns,
             tiles: columns * rows,
         };
-        self.blocks = context.blocks;
         match source {
             Source::Mesh(mesh) => {
                 self.vertices.shade(mesh, shader, &context);
@@ -201,16 +199,22 @@ impl Front {
         chunk: &'a Chunk,
         number: u32,
     ) -> Triangle<'a> {
+        let blocks = blocks_of(N);
         match source {
             Source::Mesh(mesh) if number & EXTRA == 0 => {
-                self.vertices.triangle(mesh.triangle(number as usize), self.blocks)
+                self.vertices.triangle(mesh.triangle(number as usize), blocks)
             }
             _ => {
                 let first = 3 * (number & !EXTRA) as usize;
-                chunk.extra.triangle([first, first + 1, first + 2], self.blocks)
+                chunk.extra.triangle([first, first + 1, first + 2], blocks)
             }
         }
     }
+}
+
+/// How many blocks of eight numbers a record with so many varyings has.
+const fn blocks_of(varyings: usize) -> usize {
+    (2 + varyings).div_ceil(LANES)
 }
 
 impl Vertices {

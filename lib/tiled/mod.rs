@@ -122,6 +122,7 @@ impl Tiled {
             let frame = Frame {
                 shader,
                 state,
+                is_plain: tile::is_plain(state),
                 front,
                 source,
                 columns: window.right,

@@ -2,7 +2,7 @@
 
 use super::edges::SMALL;
 use super::front::{Triangle, box_of, is_at_most, shared};
-use super::tile::{Frame, is_plain};
+use super::tile::Frame;
 use crate::Rect;
 use crate::edge::{Coverage, Subpixel, center};
 use crate::shader::Shader;
@@ -32,7 +32,7 @@ pub(super) fn hidden_behind<S: Shader<N>, const N: usize>(
     tile: Rect,
 ) -> f64 {
     let mut behind = NOTHING_IS_HIDDEN;
-    if !is_plain(frame.state) {
+    if !frame.is_plain {
         return behind;
     }
     frame.front.each_triangle_in(frame.source, number, |triangle| {

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use prefetch_index::prefetch_index;
 use wide::{f32x8, i32x8};
 
-use super::edges::{SMALL, Setup, Small, Spans};
+use super::edges::{SMALL, STEPS, Setup, Small, Spans};
 use super::front::{Front, Source, Triangle, box_of, is_at_most, shared};
 use super::occlusion::{NOTHING_IS_HIDDEN, coverage_of, depth_range, hidden_behind};
 use super::record::{Numbers, Record, Ways, even};
@@ -27,6 +27,8 @@ pub(super) struct Frame<'a, S: Shader<N>, const N: usize> {
     pub(super) state: &'a RenderState,
     pub(super) front: &'a Front,
     pub(super) source: &'a Source<'a, S, N>,
+    /// Whether all options that matter for a pixel have their default values: the most common case.
+    pub(super) is_plain: bool,
     /// How wide the picture is.
     pub(super) columns: i32,
     /// Whether the shader has been seen to throw fragments of larger triangles away: only these can hide others.
@@ -41,14 +43,9 @@ pub(super) struct Tile<'a> {
     /// Nothing that is deeper than this can be seen.
     behind: f64,
     queue: Queue,
-    /// What a small triangle covers first in each row: which column, and its record.
-    starts: [(usize, f32x8); SMALL],
     /// What a larger one covers.
     spans: Spans,
 }
-
-/// Steps to the right, as a factor.
-const STEPS: [f32; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 
 /// Fragments of small triangles that wait until there are eight of them.
 struct Queue {
@@ -76,7 +73,6 @@ impl<'a> Tile<'a> {
             rect: Rect::sized(0, 0),
             behind: NOTHING_IS_HIDDEN,
             queue: Queue { count: 0, records: [f32x8::ZERO; LANES], places: [0; LANES] },
-            starts: [(0, f32x8::ZERO); SMALL],
             spans: Spans::NONE,
         }
     }
@@ -140,17 +136,16 @@ impl<'a> Tile<'a> {
         let setup = Small::new(triangle.places, [area.left, area.bottom]);
         let ways = Ways::<N>::of(triangle);
         let step = ways.change(setup.weight_step()).first;
-        let starts = &mut self.starts;
-        let mut covered = setup.covered(area, |row, first, weights| {
-            starts[row % SMALL] = (first, ways.at(weights).first);
-        });
+        let mut covered = setup.covered(area);
+        let (firsts, weights) = setup.starts(covered);
         let (corner, width) = (self.band.place([area.left, area.bottom]), self.band.stride);
         while covered != 0 {
             let bit = covered.trailing_zeros() as usize;
             covered &= covered - 1;
             let (row, column) = (bit / SMALL, bit % SMALL);
-            let (first, start) = self.starts[row];
-            let record = start + step * f32x8::splat(STEPS[column - first]);
+            let start = ways.at([weights[0][row], weights[1][row]]).first;
+            // The remainder only tells that it is a place in the list.
+            let record = start + step * f32x8::splat(STEPS[(column - firsts[row] as usize) % SMALL]);
             self.enqueue(frame, record, corner + row * width + column);
         }
     }
@@ -162,10 +157,8 @@ impl<'a> Tile<'a> {
         record: f32x8,
         place: usize,
     ) {
-        // Stored depths only become harder to pass: what fails now fails later.
-        let is_linear = frame.state.depth_encoding.is_linear_on_screen();
-        let stored = self.band.depths[place];
-        if is_linear && !frame.state.merge.depth_test.passes(record.as_array_ref()[1], stored) {
+        // Stored depths only become less: what fails now fails later.
+        if frame.is_plain && record.as_array_ref()[1] > self.band.depths[place] {
             return;
         }
         self.queue.records[self.queue.count] = record;
@@ -178,7 +171,7 @@ impl<'a> Tile<'a> {
 
     /// Shades all fragments that wait.
     fn flush<S: Shader<N>, const N: usize>(&mut self, frame: &Frame<'_, S, N>) {
-        if self.queue.count > 0 && is_plain(frame.state) {
+        if self.queue.count > 0 && frame.is_plain {
             self.flush_queue::<true, S, N>(frame);
         } else if self.queue.count > 0 {
             self.flush_queue::<false, S, N>(frame);
@@ -229,7 +222,7 @@ impl<'a> Tile<'a> {
         self.flush(frame);
         let setup = Setup::new(triangle.places);
         self.spans.find(&setup, area.rows(), frame.columns);
-        if is_plain(frame.state) {
+        if frame.is_plain {
             draw_rows::<true, S, N>(frame, triangle, &setup, &self.spans, area, &mut self.band);
         } else {
             draw_rows::<false, S, N>(frame, triangle, &setup, &self.spans, area, &mut self.band);
@@ -237,7 +230,7 @@ impl<'a> Tile<'a> {
     }
 }
 
-/// Whether all options that matter for a pixel have their default values: the most common case, known at compile time.
+/// Whether these options for a pixel are the default ones.
 pub(super) fn is_plain(state: &RenderState) -> bool {
     state.merge == Merge::default()
         && state.depth_encoding.is_linear_on_screen()
