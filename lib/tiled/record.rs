@@ -24,6 +24,19 @@ impl<const N: usize> Record<N> {
         Self { first: blocks[0], more: from_fn(|i| if is_used(i + 1) { blocks[i + 1] } else { f32x8::ZERO }) }
     }
 
+    /// Its numbers, each for all lanes.
+    ///
+    /// By way of memory: taking a number out of a register, for all lanes, would keep those parts of the processor busy that
+    /// the arithmetic needs. It changes nothing but the time.
+    #[inline(always)]
+    pub(super) fn spread(self) -> EvenVaryings<Lanes, N> {
+        let Self { first, more } = self;
+        let first = black_box(first.as_array_ref());
+        even(|k| {
+            Lanes::splat(if k < LANES { first[k] } else { more[k / LANES - 1].as_array_ref()[k % LANES] })
+        })
+    }
+
     #[inline(always)]
     fn with(&self, other: &Self, combine: impl Fn(f32x8, f32x8) -> f32x8) -> Self {
         Self {
@@ -62,28 +75,6 @@ impl<const N: usize> Ways<N> {
     pub(super) fn change(&self, [second, third]: [f32; 2]) -> Record<N> {
         let [second, third] = [second, third].map(f32x8::splat);
         self.to_second.with(&self.to_third, |to_second, to_third| to_second * second + to_third * third)
-    }
-}
-
-/// The numbers of a record, each for all lanes.
-pub(super) struct Numbers<'a, const N: usize> {
-    first: &'a [f32; LANES],
-    more: &'a [f32x8; N],
-}
-
-impl<'a, const N: usize> Numbers<'a, N> {
-    /// By way of memory: taking a number out of a register, for all lanes, would keep those parts of the processor busy that
-    /// the arithmetic needs. It changes nothing but the time.
-    #[inline(always)]
-    pub(super) fn of(first: &'a f32x8, more: &'a [f32x8; N]) -> Self {
-        Self { first: black_box(first.as_array_ref()), more }
-    }
-
-    #[inline(always)]
-    pub(super) fn get(&self, k: usize) -> Lanes {
-        let number =
-            if k < LANES { self.first[k] } else { self.more[k / LANES - 1].as_array_ref()[k % LANES] };
-        Lanes::splat(number)
     }
 }
 

@@ -8,7 +8,7 @@ use wide::{f32x8, i32x8};
 use super::edges::{SMALL, STEPS, Setup, Small, Spans};
 use super::front::{Front, Source, Triangle, box_of, is_at_most, shared};
 use super::occlusion::{NOTHING_IS_HIDDEN, coverage_of, depth_range, hidden_behind};
-use super::record::{Numbers, Record, Ways, even};
+use super::record::{Ways, even};
 use super::{Band, TILE_HEIGHT};
 use crate::depth::DepthTest;
 use crate::edge::gradients_between;
@@ -253,22 +253,16 @@ fn draw_rows<const PLAIN: bool, S: Shader<N>, const N: usize>(
         (band.place([area.left, area.bottom]), band.stride, band.to_next_band);
     let (colors, depths) = (&mut *band.colors, &mut *band.depths);
     let ways = Ways::<N>::of(triangle);
-    let Record { first: block, more } = ways.change(setup.weight_step());
-    let step = Numbers::of(&block, &more);
+    let step = ways.change(setup.weight_step()).spread();
     let gradients = S::USES_DERIVATIVES.then(|| {
         let gradients = gradients_between(triangle.vertices());
-        gradients.map(|weights| {
-            let Record { first: block, more } = ways.change(weights);
-            let change = Numbers::of(&block, &more);
-            even(|k| change.get(k))
-        })
+        gradients.map(|weights| ways.change(weights).spread())
     });
     let last = colors.len() - LANES;
     let mut thrown_away = 0;
     for row in 0..area.rows().len() {
         let (first, covered, weights) = spans.row(row, &area.columns());
-        let Record { first: block, more } = ways.at(weights);
-        let start = Numbers::of(&block, &more);
+        let start = ways.at(weights).spread();
         let mut right = Lanes::splat((covered.start - first) as f32) + Lanes::new(STEPS);
         let mut place = bottom_left + row * stride + (covered.start - area.left) as usize;
         let mut count = covered.end - covered.start;
@@ -283,8 +277,8 @@ fn draw_rows<const PLAIN: bool, S: Shader<N>, const N: usize>(
             }
             let (colors, depths) = (eight(colors, place), eight(depths, place));
             fetch_ahead(to_next_band, colors, depths);
-            let number = |k: usize| start.get(k) + step.get(k) * right;
-            thrown_away |= draw_group::<PLAIN, S, N>(frame, number, &gradients, bits, colors, depths);
+            let even = start.moved(&step, right);
+            thrown_away |= draw_group::<PLAIN, S, N>(frame, even, &gradients, bits, colors, depths);
             place += LANES;
             count -= LANES as i32;
             right += Lanes::splat(LANES as f32);
@@ -312,7 +306,7 @@ fn fetch_ahead(to_next_band: usize, colors: &[Color; LANES], depths: &[f32; LANE
 #[inline(always)]
 fn draw_group<const PLAIN: bool, S: Shader<N>, const N: usize>(
     frame: &Frame<'_, S, N>,
-    number: impl Fn(usize) -> Lanes,
+    even: EvenVaryings<Lanes, N>,
     gradients: &Option<[EvenVaryings<Lanes, N>; 2]>,
     covered: i32,
     colors: &mut [Color; LANES],
@@ -323,7 +317,7 @@ fn draw_group<const PLAIN: bool, S: Shader<N>, const N: usize>(
 
     // Depth first: what is hidden need not be shaded.
     let is_linear = PLAIN || state.depth_encoding.is_linear_on_screen();
-    let depth = if is_linear { number(1) } else { even::<N>(&number).multiplied(interpolation).w };
+    let depth = if is_linear { even.depth } else { even.multiplied(interpolation).w };
     let stored = Lanes::new(*depths);
     let test = if PLAIN { DepthTest::LessOrEqual } else { state.merge.depth_test };
     let seen = covered & passes(test, depth, stored).bits();
@@ -331,7 +325,7 @@ fn draw_group<const PLAIN: bool, S: Shader<N>, const N: usize>(
         return 0;
     }
 
-    let point = even(number).multiplied(interpolation);
+    let point = even.multiplied(interpolation);
     let shaded = match gradients {
         Some(gradients) => {
             let [dx, dy] = gradients.map(|change| change.derivative(&point, interpolation));
