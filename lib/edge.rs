@@ -39,7 +39,7 @@ pub const SUBPIXELS: i64 = 256;
 ///
 /// Differences of coordinates then have at most 26 bits and edge functions at most 53: exact in 64-bit integers, and in
 /// `f64` as well.
-const FARTHEST: f64 = 65_536.0;
+pub(crate) const FARTHEST: f64 = 65_536.0;
 
 /// A place on the screen in 1/256 pixel, y up.
 pub type Subpixel = [i64; 2];

@@ -87,7 +87,7 @@ impl<R: Scalar> Rasterizer for Exact<R> {
 
 // ANCHOR: guard_band
 /// How far beyond the border of the view a vertex may be, in NDC.
-const GUARD_BAND: f64 = 2.0;
+pub(crate) const GUARD_BAND: f64 = 2.0;
 
 #[inline]
 pub(crate) fn is_in_guard_band<const N: usize>(vertex: &NdcVertex<N>) -> bool {

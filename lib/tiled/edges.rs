@@ -7,7 +7,7 @@ use bytemuck::cast;
 use wide::{CmpEq, CmpGt, CmpLt, f64x4, i16x8, i32x8};
 
 use super::TILE_HEIGHT;
-use super::front::Place;
+use super::vertices::Place;
 use crate::Rect;
 use crate::edge::{SUBPIXELS, is_top_left};
 use crate::lanes::{LANES, Lanes};

@@ -63,6 +63,7 @@ mod front;
 mod occlusion;
 mod record;
 mod tile;
+mod vertices;
 
 use std::ops::Range;
 use std::sync::Mutex;

@@ -1,0 +1,366 @@
+//! Vertices: shaded, divided by ω and snapped to the grid, each once, for all triangles that share it. On all threads.
+
+use std::array::from_fn;
+
+use arrayvec::ArrayVec;
+use bytemuck::cast;
+use glam::{DVec3, DVec4, dvec3};
+use rayon::prelude::*;
+use wide::{CmpEq, CmpGe, CmpGt, CmpLe, f32x8, f64x4, i64x4};
+
+use super::edges::NO_FRACTIONS;
+use super::front::Triangle;
+use crate::Rect;
+use crate::clip::{ClipTest, ClipVertex, NdcVertex, Plane};
+use crate::edge::{FARTHEST, SUBPIXELS, snapped};
+use crate::exact::GUARD_BAND;
+use crate::interpolate::Interpolation;
+use crate::lanes::LANES;
+use crate::mesh::Mesh;
+use crate::pipeline::RenderState;
+use crate::shader::Shader;
+use crate::transform::Viewport;
+use crate::varyings::EvenVaryings;
+
+/// A place on the screen in 1/256 pixel.
+pub(super) type Place = [i32; 2];
+
+/// Vertices, made ready for triangles.
+#[derive(Debug, Default)]
+pub(super) struct Vertices {
+    places: Vec<Place>,
+    /// Which planes a vertex lies outside of, a bit each; and the two bits below.
+    outside: Vec<u8>,
+    /// 1/ω, depth, V/ω: as many blocks of eight numbers for a vertex as it takes.
+    records: Vec<f32x8>,
+}
+
+/// The vertex is not finite, or too far away: no triangle of it is drawn.
+pub(super) const NOWHERE: u8 = 1 << 6;
+/// The vertex lies beyond the guard band.
+pub(super) const BEYOND: u8 = 1 << 7;
+
+/// So many vertices are divided and snapped at a time.
+const AT_A_TIME: usize = 4;
+
+/// How many blocks of eight numbers a record with so many varyings has.
+const fn blocks_of(varyings: usize) -> usize {
+    (2 + varyings).div_ceil(LANES)
+}
+
+impl Vertices {
+    /// Forgets all.
+    pub(super) fn clear(&mut self) {
+        self.places.clear();
+        self.outside.clear();
+        self.records.clear();
+    }
+
+    // ANCHOR: shade_vertices
+    /// Shades, projects and snaps every vertex of a mesh once.
+    pub(super) fn shade<S: Shader<N>, const N: usize>(
+        &mut self,
+        mesh: &Mesh<S::Attributes>,
+        shader: &S,
+        projection: &Projection<'_>,
+    ) {
+        let vertices = mesh.vertices();
+        // So many that they can be done four at a time; those after the last are never asked for.
+        let count = vertices.len().next_multiple_of(AT_A_TIME);
+        let blocks = blocks_of(N);
+        self.places.resize(count, [0; 2]);
+        self.outside.resize(count, 0);
+        self.records.resize(count * blocks, f32x8::ZERO);
+        self.each_part(blocks, &|first, Slots { places, outside, records }| {
+            // Not taken from around the closure: here it is known when the program is compiled.
+            let blocks = blocks_of(N);
+            let slots = places.as_chunks_mut().0.iter_mut().zip(outside.as_chunks_mut().0);
+            let slots = slots.zip(records.chunks_exact_mut(AT_A_TIME * blocks));
+            for (four, ((places, outside), records)) in slots.enumerate() {
+                let number = |i: usize| (first + four * AT_A_TIME + i).min(vertices.len() - 1);
+                let clip: [ClipVertex<N>; AT_A_TIME] = from_fn(|i| shader.vertex(&vertices[number(i)]));
+                let ndc;
+                (*places, *outside, ndc) = projection.of(&clip);
+                let records = records.chunks_exact_mut(blocks);
+                for ((vertex, position), record) in clip.iter().zip(ndc).zip(records) {
+                    let ClipVertex { position: DVec4 { w, .. }, varyings } = *vertex;
+                    write_record(
+                        &NdcVertex { position, w, varyings },
+                        projection.state.interpolation,
+                        record,
+                    );
+                }
+            }
+        });
+    }
+    // ANCHOR_END: shade_vertices
+}
+
+impl Vertices {
+    /// Hands the vertices out in parts, to all threads; `shade` is told the number of the first in each.
+    fn each_part(&mut self, blocks: usize, shade: &(dyn Fn(usize, Slots<'_>) + Sync)) {
+        const PART: usize = 256 * AT_A_TIME;
+        let places = self.places.par_chunks_mut(PART);
+        let parts = places.zip(self.outside.par_chunks_mut(PART));
+        let parts = parts.zip(self.records.par_chunks_mut(PART * blocks)).enumerate();
+        parts.for_each(|(i, ((places, outside), records))| {
+            shade(i * PART, Slots { places, outside, records });
+        });
+    }
+
+    /// Adds the corners of a triangle that has been clipped and divided; answers where they are, if they are near enough.
+    pub(super) fn push<const N: usize>(
+        &mut self,
+        corners: &[NdcVertex<N>; 3],
+        projection: &Projection<'_>,
+    ) -> Option<[Place; 3]> {
+        let [a, b, c] = corners.each_ref().map(|vertex| projection.place_of(vertex));
+        let places = [a?, b?, c?];
+        let first = self.records.len();
+        self.places.extend(places);
+        self.records.resize(first + 3 * blocks_of(N), f32x8::ZERO);
+        for (vertex, record) in corners.iter().zip(self.records[first..].chunks_exact_mut(blocks_of(N))) {
+            write_record(vertex, projection.state.interpolation, record);
+        }
+        Some(places)
+    }
+
+    /// How many triangles have been pushed.
+    pub(super) fn triangle_count(&self) -> usize {
+        self.places.len() / 3
+    }
+
+    /// Where vertices are.
+    #[inline(always)]
+    pub(super) fn places(&self, corners: [usize; 3]) -> [Place; 3] {
+        corners.map(|corner| self.places[corner])
+    }
+
+    /// What each of them lies outside of.
+    #[inline(always)]
+    pub(super) fn outside(&self, corners: [usize; 3]) -> [u8; 3] {
+        corners.map(|corner| self.outside[corner])
+    }
+
+    /// A triangle of vertices with so many varyings.
+    ///
+    /// Inlined, as [`Small::new`](super::edges::Small::new) is: places that are written to memory here would be read there
+    /// in wider pieces, for which the processor waits.
+    #[inline(always)]
+    pub(super) fn triangle<const N: usize>(&self, corners: [usize; 3]) -> Triangle<'_> {
+        let blocks = blocks_of(N);
+        Triangle {
+            places: self.places(corners),
+            records: corners.map(|corner| &self.records[corner * blocks..(corner + 1) * blocks]),
+        }
+    }
+}
+
+/// Some vertices, one after the other, to be filled.
+struct Slots<'a> {
+    places: &'a mut [Place],
+    outside: &'a mut [u8],
+    records: &'a mut [f32x8],
+}
+
+fn write_record<const N: usize>(vertex: &NdcVertex<N>, interpolation: Interpolation, record: &mut [f32x8]) {
+    let corner = EvenVaryings::<f32, N>::new(vertex, interpolation);
+    let mut numbers = [corner.distance, corner.depth].into_iter().chain(corner.values);
+    for block in record {
+        *block = f32x8::new(from_fn(|_| numbers.next().unwrap_or(0.0)));
+    }
+}
+
+/// From clip space to the grid: what is the same for all vertices of a picture.
+pub(super) struct Projection<'a> {
+    pub(super) state: &'a RenderState,
+    pub(super) planes: ArrayVec<Plane, 6>,
+    sides: ArrayVec<Side, 6>,
+    viewport: Viewport,
+}
+
+/// A plane, each number for four vertices.
+struct Side {
+    normal: [f64x4; 4],
+    offset: f64x4,
+    /// Its bit.
+    bit: i64,
+}
+
+impl Side {
+    fn new((number, plane): (usize, &Plane)) -> Self {
+        let (normal, offset) = plane.coefficients();
+        Self { normal: normal.map(f64x4::splat), offset: f64x4::splat(offset), bit: 1 << number }
+    }
+}
+
+/// Four vertices: where they are, what each of them lies outside of, and their positions in NDC.
+type Projected = ([Place; AT_A_TIME], [u8; AT_A_TIME], [DVec3; AT_A_TIME]);
+
+impl<'a> Projection<'a> {
+    pub(super) fn new(state: &'a RenderState, window: Rect) -> Self {
+        let planes = state.clip_volume.planes(state.depth_range);
+        let sides = planes.iter().enumerate().map(Side::new).collect();
+        Self { state, planes, sides, viewport: state.viewport_in(window) }
+    }
+
+    /// Where on the screen a vertex is, if it is near enough.
+    fn place_of<const N: usize>(&self, vertex: &NdcVertex<N>) -> Option<Place> {
+        snapped(self.viewport.pixel_areas(vertex.position)).map(|place| place.map(|along| along as i32))
+    }
+
+    // ANCHOR: project_vertices
+    /// Which planes four points of clip space lie outside of, a bit each.
+    #[inline(always)]
+    fn outside(&self, clip: [f64x4; 4]) -> i64x4 {
+        let asked = match self.state.clip_test {
+            ClipTest::BeforeDivide => clip,
+            ClipTest::AfterDivide => clip.map(|component| component / clip[3]),
+        };
+        self.sides.iter().fold(i64x4::ZERO, |outside, Side { normal, offset, bit }| {
+            let [x, y, z, w]: [f64x4; 4] = from_fn(|axis| normal[axis] * asked[axis]);
+            let distance = x + y + z + w + *offset;
+            outside | unless(distance.cmp_ge(f64x4::ZERO), *bit)
+        })
+    }
+
+    /// Projects four vertices: what the functions of the chapters do with one, in the same order.
+    #[inline(always)]
+    fn of<const N: usize>(&self, vertices: &[ClipVertex<N>; AT_A_TIME]) -> Projected {
+        let positions = vertices.each_ref().map(|vertex| vertex.position.to_array());
+        let clip: [f64x4; 4] = from_fn(|axis| f64x4::new(from_fn(|i| positions[i][axis])));
+        let [x, y, z, w] = clip;
+        let ndc = [x / w, y / w, z / w];
+        let Viewport { x, y, width, height, .. } = self.viewport;
+        let pixels = [(ndc[0], x, width), (ndc[1], y, height)].map(|(along, origin, side)| {
+            f64x4::splat(origin) + (along + f64x4::ONE) * f64x4::HALF * f64x4::splat(side)
+        });
+
+        let outside = self.outside(clip);
+        let is_inside: f64x4 = cast(outside.cmp_eq(i64x4::ZERO));
+        let is_near = w.cmp_gt(f64x4::ZERO) & is_within(ndc[0], GUARD_BAND) & is_within(ndc[1], GUARD_BAND);
+        let is_finite = clip.map(|component| is_within(component, f64::MAX));
+        let is_finite = is_finite[0] & is_finite[1] & is_finite[2] & is_finite[3];
+        // A place is needed only of what is not clipped.
+        let is_placed = is_within(pixels[0], FARTHEST) & is_within(pixels[1], FARTHEST);
+        let is_somewhere = is_finite & (is_placed | !(is_inside & is_near));
+        let outside = outside | unless(is_near, BEYOND.into()) | unless(is_somewhere, NOWHERE.into());
+
+        let [x, y] = pixels.map(|along| whole(rounded(along * f64x4::splat(SUBPIXELS as f64))));
+        let ndc = ndc.map(f64x4::to_array);
+        (
+            from_fn(|i| [x[i], y[i]]),
+            outside.to_array().map(|bits| bits as u8),
+            from_fn(|i| dvec3(ndc[0][i], ndc[1][i], ndc[2][i])),
+        )
+    }
+    // ANCHOR_END: project_vertices
+}
+
+/// Bits where the answer is no.
+#[inline(always)]
+fn unless(answer: f64x4, bits: i64) -> i64x4 {
+    cast::<f64x4, i64x4>(!answer) & i64x4::splat(bits)
+}
+
+/// Whether numbers are no farther from zero than this, on either side; not so for NaN.
+#[inline(always)]
+fn is_within(numbers: f64x4, most: f64) -> f64x4 {
+    numbers.abs().cmp_le(f64x4::splat(most))
+}
+
+/// The nearest whole numbers, from the middle away from zero, as [`f64::round`] has it; for numbers of less than 2⁵¹.
+#[inline(always)]
+fn rounded(numbers: f64x4) -> f64x4 {
+    let size = numbers.abs();
+    // From the middle to the even one: once too low, perhaps.
+    let nearest = (size + f64x4::splat(NO_FRACTIONS)) - f64x4::splat(NO_FRACTIONS);
+    let too_low = (size - nearest).cmp_eq(f64x4::HALF) & f64x4::ONE;
+    (nearest + too_low).flip_signs(numbers)
+}
+
+/// Whole numbers of at most 31 bits and a sign, such as `snapped` gives (25 bits), as integers.
+///
+/// One addition, where `as` asks first whether the number fits.
+#[inline(always)]
+fn whole(numbers: f64x4) -> [i32; AT_A_TIME] {
+    (numbers + f64x4::splat(NO_FRACTIONS)).to_array().map(|number| number.to_bits() as i32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::clip::ClipVolume;
+    use crate::exact::is_in_guard_band;
+    use glam::dvec4;
+    use proptest::prelude::*;
+
+    /// Positions in clip space, in the view or not, and some that are none.
+    fn position() -> impl Strategy<Value = DVec4> {
+        let odd =
+            prop::sample::select(vec![0.0, -0.0, 1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300]);
+        let component = || prop_oneof![8 => -1.5..1.5, 1 => -300.0..300.0, 1 => odd.clone()];
+        (component(), component(), component(), prop_oneof![4 => 0.1..3.0, 1 => component()])
+            .prop_map(|(x, y, z, w)| dvec4(x, y, z, w))
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 3000, ..ProptestConfig::default() })]
+
+        #[test]
+        fn four_vertices_as_one_by_one(
+            positions in prop::array::uniform4(position()),
+            clip_test in prop::sample::select(vec![ClipTest::BeforeDivide, ClipTest::AfterDivide]),
+            clip_volume in prop::sample::select(vec![ClipVolume::Canonical, ClipVolume::InFront(0.5), ClipVolume::Everything]),
+            side in prop::sample::select(vec![640.0, 1.0, 1e5, 1e9]),
+        ) {
+            let viewport = Some(Viewport { x: -3.5, y: 2.0, width: side, height: 480.0 });
+            let state = RenderState { clip_test, clip_volume, viewport, ..RenderState::default() };
+            let projection = Projection::new(&state, Rect::sized(640, 480));
+            let vertices = positions.map(|position| ClipVertex { position, varyings: [] });
+            let (places, outside, ndc) = projection.of(&vertices);
+            for i in 0..AT_A_TIME {
+                let one = NdcVertex::<0>::from(vertices[i]);
+                prop_assert_eq!(ndc[i].to_array().map(f64::to_bits), one.position.to_array().map(f64::to_bits));
+                if !positions[i].is_finite() {
+                    prop_assert!(outside[i] & NOWHERE != 0);
+                    continue;
+                }
+                let asked = match clip_test {
+                    ClipTest::BeforeDivide => positions[i],
+                    ClipTest::AfterDivide => positions[i] / positions[i].w,
+                };
+                let planes = projection.planes.iter().enumerate();
+                let expected = planes.fold(0, |bits, (number, plane)| {
+                    let is_inside = plane.signed_distance(asked) >= 0.0;
+                    bits | u8::from(!is_inside) << number
+                });
+                prop_assert_eq!(outside[i] & !(NOWHERE | BEYOND), expected);
+                prop_assert_eq!(outside[i] & BEYOND == 0, is_in_guard_band(&one));
+                let is_placed = expected == 0 && is_in_guard_band(&one);
+                let place = projection.place_of(&one).filter(|_| is_placed);
+                prop_assert_eq!(outside[i] & NOWHERE != 0, is_placed && place.is_none());
+                if let Some(place) = place {
+                    prop_assert_eq!(places[i], place);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn whole_numbers() {
+        let most = 2_147_483_647.0;
+        for number in [0.0, -0.0, 1.0, -1.0, 16_777_216.0, -16_777_216.0, most, -most - 1.0] {
+            assert_eq!(whole(f64x4::splat(number)), [number as i32; 4]);
+        }
+    }
+
+    #[test]
+    fn rounded_as_one_by_one() {
+        let below_half = 0.5_f64.next_down();
+        for number in [0.0, below_half, 0.5, 1.5, 2.5, 2.499, 16_777_215.5, 16_777_216.5, 1e9 + below_half] {
+            let signs = f64x4::new([number, -number, number + 1.0, -number - 1.0]);
+            assert_eq!(rounded(signs).to_array(), signs.to_array().map(f64::round));
+        }
+    }
+}
