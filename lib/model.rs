@@ -29,6 +29,7 @@ use std::path::Path;
 use crate::Color;
 use crate::files::{FileError, Warnings, load_texture, read_file};
 use crate::mesh::Mesh;
+use crate::normals::{SmoothNormals, face_normal};
 use crate::texture::Texture;
 use glam::{DVec3, dvec3};
 
@@ -247,12 +248,6 @@ impl Given {
     }
 }
 
-/// A position by which corners of different objects are recognized as the same.
-fn key_of(position: DVec3) -> [u64; 3] {
-    // Adding zero makes one of the two zeros.
-    position.to_array().map(|coordinate| (coordinate + 0.0).to_bits())
-}
-
 /// The positions of an object, right-handed → left-handed.
 fn positions_of(mesh: &tobj::Mesh) -> Vec<DVec3> {
     mesh.positions.chunks_exact(3).map(left_handed).collect()
@@ -267,9 +262,9 @@ fn part_mesh(
     mesh: &tobj::Mesh,
     given: Given,
     style: NormalStyle,
-    smooth: &HashMap<[u64; 3], DVec3>,
+    smooth: &SmoothNormals,
 ) -> Result<Mesh<ModelVertex>, String> {
-    let positions = positions_of(mesh);
+    let (positions, faces) = (positions_of(mesh), mesh.indices.as_chunks().0);
     let normals: Vec<DVec3> = mesh.normals.chunks_exact(3).map(left_handed).collect();
     if let Some(bad) = positions.iter().chain(&normals).find(|v| !v.is_finite()) {
         return Err(format!("has a coordinate that is not a finite number: {} {} {}", bad.x, bad.y, -bad.z));
@@ -299,11 +294,8 @@ fn part_mesh(
                 position,
                 normal: match style {
                     _ if has_normals => normals[normal],
-                    NormalStyle::Flat => face_normal(&mesh.indices[3 * face..3 * face + 3], &positions)
-                        .normalize_or(DVec3::NEG_Z),
-                    NormalStyle::Smooth => {
-                        smooth.get(&key_of(position)).map_or(DVec3::NEG_Z, |n| n.normalize_or(DVec3::NEG_Z))
-                    }
+                    NormalStyle::Flat => face_normal(corners(&faces[face], &positions)),
+                    NormalStyle::Smooth => smooth.at(position),
                 },
                 uv: if has_uvs { [mesh.texcoords[2 * uv], mesh.texcoords[2 * uv + 1]] } else { [0.0, 0.0] },
             });
@@ -314,26 +306,20 @@ fn part_mesh(
     Mesh::indexed(vertices, indices).map_err(|error| error.to_string())
 }
 
-/// A vector upright on a face, as long as twice its area; outwards for counter-clockwise faces.
-fn face_normal(face: &[u32], positions: &[DVec3]) -> DVec3 {
-    let [a, b, c] = [0, 1, 2].map(|i| positions[face[i] as usize]);
-    // z has changed its sign, so that the cross product has, too.
-    (c - a).cross(b - a)
-}
-
-/// The sum of the face normals around each position, in whichever objects they are.
-fn smooth_normals<'a>(meshes: impl Iterator<Item = &'a tobj::Mesh>) -> HashMap<[u64; 3], DVec3> {
-    let mut sums = HashMap::new();
+/// The normals that the faces of all objects make where they meet.
+fn smooth_normals<'a>(meshes: impl Iterator<Item = &'a tobj::Mesh>) -> SmoothNormals {
+    let mut normals = SmoothNormals::default();
     for mesh in meshes {
         let positions = positions_of(mesh);
-        for face in mesh.indices.chunks_exact(3) {
-            let normal = face_normal(face, &positions);
-            for &corner in face {
-                *sums.entry(key_of(positions[corner as usize])).or_insert(DVec3::ZERO) += normal;
-            }
+        for face in mesh.indices.as_chunks().0 {
+            normals.add(corners(face, &positions));
         }
     }
-    sums
+    normals
+}
+
+fn corners(face: &[u32; 3], positions: &[DVec3]) -> [DVec3; 3] {
+    face.map(|corner| positions[corner as usize])
 }
 
 /// The textures of materials, in their order.
