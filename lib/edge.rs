@@ -55,14 +55,8 @@ pub fn center(x: i32, y: i32) -> Subpixel {
 #[must_use]
 #[inline]
 pub fn snap(position: DVec2) -> Option<Subpixel> {
-    snapped(position).map(|place| place.map(|c| c as i64))
-}
-
-/// As [`snap`], in whole numbers that are still `f64`.
-#[inline]
-pub(crate) fn snapped(position: DVec2) -> Option<[f64; 2]> {
     let is_near = position.abs().max_element() <= FARTHEST && !position.is_nan();
-    is_near.then(|| position.to_array().map(|c| (c * SUBPIXELS as f64).round()))
+    is_near.then(|| position.to_array().map(|c| (c * SUBPIXELS as f64).round() as i64))
 }
 
 // ANCHOR: edge_function

@@ -151,13 +151,13 @@ impl Real for f32x8 {
     #[inline]
     fn look_up_color(column: Self, row: Self, row_bits: u32, colors: &[Color]) -> i32x8 {
         let places = (row.fast_trunc_int() << row_bits) + column.fast_trunc_int();
-        // Two by two: taking eight numbers out of a register one by one would keep those parts of the processor busy that
-        // the arithmetic needs.
+        // Two by two: half as many numbers leave the register, which keeps those parts of the processor busy that the
+        // arithmetic needs.
         let pairs: [u64; LANES / 2] = cast(places);
         let is_high = |lane: usize| (lane % 2 == 1) == cfg!(target_endian = "little");
-        let place = |lane: usize| match pairs[lane / 2] {
-            pair if is_high(lane) => pair >> 32,
-            pair => pair & 0xFFFF_FFFF,
+        let place = |lane: usize| {
+            let pair = pairs[lane / 2];
+            if is_high(lane) { pair >> 32 } else { pair & 0xFFFF_FFFF }
         };
         i32x8::new(from_fn(|lane| colors[place(lane) as usize].bits() as i32))
     }

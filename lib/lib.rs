@@ -26,7 +26,7 @@
 //!   ch11 light         ambient, Lambert, Phong, Blinn–Phong, normal maps
 //!   ch11 files         what is wrong with a file; textures from image files
 //!   ch11 model         models (OBJ) from files
-//!        normals       normals for models that have none
+//!   ch11 normals       normals for models that have none
 //!   more mipmap        smaller copies of a texture, levels of detail
 //!   more srgb          what the numbers of a picture mean as light
 //!   more varyings      weights corrected by ω, derivatives

@@ -1,7 +1,7 @@
 //! Chapter 11: normals from faces, for models that have none.
 //!
-//! Corners in camera space go in, in the order that an OBJ file has them; unit vectors come out. Where there is no
-//! direction, because faces have no area or turn against each other, it is the one towards the camera.
+//! Corners in left-handed model space go in, in the order that an OBJ file has them; unit vectors come out. Where there is
+//! no direction, because faces have no area or turn against each other, it is −z.
 
 use std::collections::HashMap;
 
@@ -11,7 +11,7 @@ use glam::DVec3;
 ///
 /// ```text
 ///          c
-///         ╱ ╲         (c − a) × (b − a): the camera's space is left-handed, and so z has changed its
+///         ╱ ╲         (c − a) × (b − a): model space is left-handed here, and so z has changed its
 ///        ╱   ╲        sign since the file was written, and the cross product with it
 ///       a ─── b
 /// ```

@@ -349,6 +349,20 @@ fn a_small_window_on_a_huge_view() {
 }
 
 #[test]
+fn a_corner_that_is_too_far_away() {
+    // The second corner is farther away than the grid reaches, the third beyond the left plane: of the two pieces that are
+    // left one can be drawn.
+    let corners = [(-0.9999, -0.5), (0.5, 0.0), (-1.0005, 0.9)];
+    let records = corners.map(|(x, y)| (dvec4(x, y, 0.0, 1.0), [100.0; 5])).to_vec();
+    let mesh = Mesh::unindexed(records).expect("one triangle");
+    let viewport = Some(Viewport { x: 0.0, y: 0.0, width: 200_000.0, height: 64.0 });
+    for clip_volume in [ClipVolume::Canonical, ClipVolume::Everything] {
+        let state = RenderState { viewport, clip_volume, ..RenderState::default() };
+        compare(&mesh, &busy(AddressMode::Repeat, false), &state, (64, 64));
+    }
+}
+
+#[test]
 fn thousands_of_clipped_triangles() {
     let mut next = numbers(99);
     let records = (0..9000)

@@ -166,8 +166,8 @@ pub(super) const SMALL: usize = 8;
 
 /// The three edges of a small triangle.
 ///
-/// All numbers are whole, and less than 2²⁴ in any of 8 × 8 pixels of which the first lies in the triangle's box: exact in
-/// `f32`.
+/// Edge functions and their steps are whole, and less than 2²⁴ in 8 × 8 pixels of which the first lies in the triangle's
+/// box, though rows of the box may be missing below: 2302 · (2047 + 3839) at most. So they are exact in `f32`.
 pub(super) struct Small {
     /// The edge functions at the first center.
     start: [f32; 3],
@@ -214,6 +214,7 @@ impl Small {
     #[inline(always)]
     pub(super) fn covered(&self, area: Rect) -> u64 {
         let columns = (1_u64 << area.columns().len()) - 1;
+        // A zero is positive here: the first summand is never −0, and then no sum is.
         let mut values: [Lanes; 3] = from_fn(|i| {
             Lanes::splat(self.start[i] - self.shy[i]) + Lanes::splat(self.right[i]) * Lanes::new(STEPS)
         });
@@ -227,10 +228,11 @@ impl Small {
         covered
     }
 
-    /// The first covered column of each row, if there is one, and how much the second and the third vertex weigh there.
+    /// The first covered column of each row, and how much the second and the third vertex weigh there. In rows without any
+    /// what is answered means nothing.
     #[inline(always)]
     pub(super) fn starts(&self, covered: u64) -> ([i32; SMALL], [[f32; SMALL]; 2]) {
-        let rows = i16x8::from_u8x16_low(cast([covered, 0]));
+        let rows = i16x8::from_u8x16_low(cast([covered.to_le(), 0]));
         // The exponent of a power of two is the number of its bit.
         let lowest: Lanes = i32x8::from_i16x8(rows & -rows).round_float();
         let columns: i32x8 = (cast::<Lanes, i32x8>(lowest) >> 23) - i32x8::splat(127);
@@ -317,7 +319,8 @@ mod tests {
             let window = Rect { bottom: i32::max(whole.bottom + below, 0), ..Rect::sized(2000, 2000) };
             let Some(area) = shared(whole, window) else { return Ok(()) };
             let small = Small::new(places, [area.left, area.bottom]);
-            prop_assert_eq!(small.weight_step(), coverage.weight_step::<f32>());
+            let bits_of = |weights: [f32; 2]| weights.map(f32::to_bits);
+            prop_assert_eq!(bits_of(small.weight_step()), bits_of(coverage.weight_step()));
             let covered = small.covered(area);
             let (columns, weights) = small.starts(covered);
             for (row, y) in area.rows().enumerate() {
@@ -327,8 +330,7 @@ mod tests {
                 if !expected.is_empty() {
                     let expected_weights = coverage.weights::<f32>(coverage.edge_values(center(expected.start, y)));
                     prop_assert_eq!(columns[row], expected.start - area.left);
-                    let bits = |weights: [f32; 2]| weights.map(f32::to_bits);
-                    prop_assert_eq!(bits(weights.map(|weights| weights[row])), bits(expected_weights));
+                    prop_assert_eq!(bits_of(weights.map(|weights| weights[row])), bits_of(expected_weights));
                 }
             }
         }

@@ -6,7 +6,7 @@ use arrayvec::ArrayVec;
 use rayon::prelude::*;
 use wide::f32x8;
 
-use super::vertices::{BEYOND, NOWHERE, Place, Projection, Vertices};
+use super::vertices::{AMISS, Place, Projection, Vertices};
 use super::{TILE_HEIGHT, TILE_WIDTH, tiles_of};
 use crate::Rect;
 use crate::area::Winding;
@@ -189,10 +189,10 @@ fn assemble<S: Shader<N>, const N: usize>(
     let corners = mesh.triangle(number);
     let outside = vertices.outside(corners);
     let (any, all) = (outside[0] | outside[1] | outside[2], outside[0] & outside[1] & outside[2]);
-    let beyond_a_plane = all & !(NOWHERE | BEYOND) != 0;
+    let beyond_a_plane = all & !AMISS != 0;
     if any == 0 {
         chunk.add(number as u32, vertices.places(corners), context);
-    } else if any & NOWHERE == 0 && !beyond_a_plane {
+    } else if !beyond_a_plane {
         let projection = &context.projection;
         // Clipping is rare, and needs the vertex as it was: shade it once more.
         let triangle = corners.map(|corner| shader.vertex(&mesh.vertices()[corner]));

@@ -1,14 +1,14 @@
 //! Beyond the book: the fast rasterizer. What [`Exact`](crate::exact::Exact) draws in `f32`, to the last bit, in a
 //! fraction of the time.
 //!
-//! Eight things make the difference: eight fragments are shaded at a time
-//! ([`lanes`](crate::lanes)); every vertex is made ready once, however many triangles share it, and triangles that turn
-//! away are gone before anything is reckoned for them (`front.rs`); triangles are sorted into *tiles*, rectangles of
-//! the picture that are small enough to stay near, and a row of tiles belongs to one thread (`bins`, in `front.rs`);
-//! within a tile, the covered part of a row is known by its ends (`edges.rs`), and values go on evenly from its first
-//! pixel (`record.rs`); triangles that cover only a few pixels share the eight lanes with others (`tile.rs`); what is
-//! hidden in all of a tile is left out there (`occlusion.rs`); what is blank is not cleared again (`background.rs`); and
-//! while pixels are drawn, others that are soon cleared are fetched (`tile.rs`).
+//! Eight things make the difference: eight fragments are shaded at a time ([`lanes`](crate::lanes)); every vertex is
+//! made ready once, however many triangles share it (`vertices.rs`), and triangles that turn away are gone before anything
+//! is reckoned for them (`front.rs`); triangles are sorted into *tiles*, rectangles of the picture that are small enough to
+//! stay near, and a row of tiles belongs to one thread (`front.rs`); within a tile, the covered part of a row is known by
+//! its ends (`edges.rs`), and values go on evenly from its first pixel (`record.rs`); triangles that cover only a few
+//! pixels share the eight lanes with others (`tile.rs`); what is hidden in all of a tile is left out there
+//! (`occlusion.rs`); what is blank is not cleared again (`background.rs`); and while pixels are drawn, others that are soon
+//! cleared are fetched (`tile.rs`).
 //!
 //! ```text
 //!   vertices ──► shaded, divided, ──► triangles: culled, ──► bins: for each tile, ──► tiles: coverage, depth,

@@ -157,7 +157,7 @@ impl<'a> Tile<'a> {
         record: f32x8,
         place: usize,
     ) {
-        // Stored depths only become less: what fails now fails later.
+        // Stored depths never grow: what fails now fails later.
         if frame.is_plain && record.as_array_ref()[1] > self.band.depths[place] {
             return;
         }

@@ -12,7 +12,7 @@ use super::edges::NO_FRACTIONS;
 use super::front::Triangle;
 use crate::Rect;
 use crate::clip::{ClipTest, ClipVertex, NdcVertex, Plane};
-use crate::edge::{FARTHEST, SUBPIXELS, snapped};
+use crate::edge::{FARTHEST, SUBPIXELS, snap};
 use crate::exact::GUARD_BAND;
 use crate::interpolate::Interpolation;
 use crate::lanes::LANES;
@@ -29,16 +29,15 @@ pub(super) type Place = [i32; 2];
 #[derive(Debug, Default)]
 pub(super) struct Vertices {
     places: Vec<Place>,
-    /// Which planes a vertex lies outside of, a bit each; and the two bits below.
+    /// Which planes a vertex lies outside of, a bit each; and the bit below.
     outside: Vec<u8>,
     /// 1/ω, depth, V/ω: as many blocks of eight numbers for a vertex as it takes.
     records: Vec<f32x8>,
 }
 
-/// The vertex is not finite, or too far away: no triangle of it is drawn.
-pub(super) const NOWHERE: u8 = 1 << 6;
-/// The vertex lies beyond the guard band.
-pub(super) const BEYOND: u8 = 1 << 7;
+/// The vertex is not finite, beyond the guard band or too far away on the screen: triangles of it cannot be drawn as they
+/// are.
+pub(super) const AMISS: u8 = 1 << 7;
 
 /// So many vertices are divided and snapped at a time.
 const AT_A_TIME: usize = 4;
@@ -65,14 +64,14 @@ impl Vertices {
         projection: &Projection<'_>,
     ) {
         let vertices = mesh.vertices();
-        // So many that they can be done four at a time; those after the last are never asked for.
+        // Rounded up to a multiple of four. What is too much repeats the last vertex, and no triangle names it.
         let count = vertices.len().next_multiple_of(AT_A_TIME);
         let blocks = blocks_of(N);
         self.places.resize(count, [0; 2]);
         self.outside.resize(count, 0);
         self.records.resize(count * blocks, f32x8::ZERO);
         self.each_part(blocks, &|first, Slots { places, outside, records }| {
-            // Not taken from around the closure: here it is known when the program is compiled.
+            // Computed again: so it is a constant in here, and not a captured number.
             let blocks = blocks_of(N);
             let slots = places.as_chunks_mut().0.iter_mut().zip(outside.as_chunks_mut().0);
             let slots = slots.zip(records.chunks_exact_mut(AT_A_TIME * blocks));
@@ -80,7 +79,7 @@ impl Vertices {
                 let number = |i: usize| (first + four * AT_A_TIME + i).min(vertices.len() - 1);
                 let clip: [ClipVertex<N>; AT_A_TIME] = from_fn(|i| shader.vertex(&vertices[number(i)]));
                 let ndc;
-                (*places, *outside, ndc) = projection.of(&clip);
+                (*places, *outside, ndc) = projection.project(&clip);
                 let records = records.chunks_exact_mut(blocks);
                 for ((vertex, position), record) in clip.iter().zip(ndc).zip(records) {
                     let ClipVertex { position: DVec4 { w, .. }, varyings } = *vertex;
@@ -195,7 +194,7 @@ impl Side {
 }
 
 /// Four vertices: where they are, what each of them lies outside of, and their positions in NDC.
-type Projected = ([Place; AT_A_TIME], [u8; AT_A_TIME], [DVec3; AT_A_TIME]);
+type FourVertices = ([Place; AT_A_TIME], [u8; AT_A_TIME], [DVec3; AT_A_TIME]);
 
 impl<'a> Projection<'a> {
     pub(super) fn new(state: &'a RenderState, window: Rect) -> Self {
@@ -206,7 +205,7 @@ impl<'a> Projection<'a> {
 
     /// Where on the screen a vertex is, if it is near enough.
     fn place_of<const N: usize>(&self, vertex: &NdcVertex<N>) -> Option<Place> {
-        snapped(self.viewport.pixel_areas(vertex.position)).map(|place| place.map(|along| along as i32))
+        snap(self.viewport.pixel_areas(vertex.position)).map(|place| place.map(|along| along as i32))
     }
 
     // ANCHOR: project_vertices
@@ -226,7 +225,7 @@ impl<'a> Projection<'a> {
 
     /// Projects four vertices: what the functions of the chapters do with one, in the same order.
     #[inline(always)]
-    fn of<const N: usize>(&self, vertices: &[ClipVertex<N>; AT_A_TIME]) -> Projected {
+    fn project<const N: usize>(&self, vertices: &[ClipVertex<N>; AT_A_TIME]) -> FourVertices {
         let positions = vertices.each_ref().map(|vertex| vertex.position.to_array());
         let clip: [f64x4; 4] = from_fn(|axis| f64x4::new(from_fn(|i| positions[i][axis])));
         let [x, y, z, w] = clip;
@@ -236,15 +235,12 @@ impl<'a> Projection<'a> {
             f64x4::splat(origin) + (along + f64x4::ONE) * f64x4::HALF * f64x4::splat(side)
         });
 
-        let outside = self.outside(clip);
-        let is_inside: f64x4 = cast(outside.cmp_eq(i64x4::ZERO));
-        let is_near = w.cmp_gt(f64x4::ZERO) & is_within(ndc[0], GUARD_BAND) & is_within(ndc[1], GUARD_BAND);
         let is_finite = clip.map(|component| is_within(component, f64::MAX));
-        let is_finite = is_finite[0] & is_finite[1] & is_finite[2] & is_finite[3];
-        // A place is needed only of what is not clipped.
-        let is_placed = is_within(pixels[0], FARTHEST) & is_within(pixels[1], FARTHEST);
-        let is_somewhere = is_finite & (is_placed | !(is_inside & is_near));
-        let outside = outside | unless(is_near, BEYOND.into()) | unless(is_somewhere, NOWHERE.into());
+        let is_near = [is_within(ndc[0], GUARD_BAND), is_within(ndc[1], GUARD_BAND)];
+        let is_placed = pixels.map(|along| is_within(along, FARTHEST));
+        let answers = is_finite.into_iter().chain(is_near).chain(is_placed);
+        let is_ready = answers.fold(w.cmp_gt(f64x4::ZERO), |all, answer| all & answer);
+        let outside = self.outside(clip) | unless(is_ready, AMISS.into());
 
         let [x, y] = pixels.map(|along| whole(rounded(along * f64x4::splat(SUBPIXELS as f64))));
         let ndc = ndc.map(f64x4::to_array);
@@ -279,7 +275,7 @@ fn rounded(numbers: f64x4) -> f64x4 {
     (nearest + too_low).flip_signs(numbers)
 }
 
-/// Whole numbers of at most 31 bits and a sign, such as `snapped` gives (25 bits), as integers.
+/// Whole numbers of at most 31 bits and a sign, such as places are (25 bits), as integers.
 ///
 /// One addition, where `as` asks first whether the number fits.
 #[inline(always)]
@@ -318,13 +314,15 @@ mod tests {
             let state = RenderState { clip_test, clip_volume, viewport, ..RenderState::default() };
             let projection = Projection::new(&state, Rect::sized(640, 480));
             let vertices = positions.map(|position| ClipVertex { position, varyings: [] });
-            let (places, outside, ndc) = projection.of(&vertices);
+            let (places, outside, ndc) = projection.project(&vertices);
             for i in 0..AT_A_TIME {
                 let one = NdcVertex::<0>::from(vertices[i]);
-                prop_assert_eq!(ndc[i].to_array().map(f64::to_bits), one.position.to_array().map(f64::to_bits));
-                if !positions[i].is_finite() {
-                    prop_assert!(outside[i] & NOWHERE != 0);
-                    continue;
+                let is_ready = positions[i].is_finite() && is_in_guard_band(&one);
+                let place = projection.place_of(&one).filter(|_| is_ready);
+                prop_assert_eq!(outside[i] & AMISS != 0, place.is_none());
+                if let Some(place) = place {
+                    prop_assert_eq!(places[i], place);
+                    prop_assert_eq!(ndc[i], one.position);
                 }
                 let asked = match clip_test {
                     ClipTest::BeforeDivide => positions[i],
@@ -335,14 +333,7 @@ mod tests {
                     let is_inside = plane.signed_distance(asked) >= 0.0;
                     bits | u8::from(!is_inside) << number
                 });
-                prop_assert_eq!(outside[i] & !(NOWHERE | BEYOND), expected);
-                prop_assert_eq!(outside[i] & BEYOND == 0, is_in_guard_band(&one));
-                let is_placed = expected == 0 && is_in_guard_band(&one);
-                let place = projection.place_of(&one).filter(|_| is_placed);
-                prop_assert_eq!(outside[i] & NOWHERE != 0, is_placed && place.is_none());
-                if let Some(place) = place {
-                    prop_assert_eq!(places[i], place);
-                }
+                prop_assert_eq!(outside[i] & !AMISS, expected);
             }
         }
     }
