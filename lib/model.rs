@@ -318,6 +318,7 @@ fn smooth_normals<'a>(meshes: impl Iterator<Item = &'a tobj::Mesh>) -> SmoothNor
     normals
 }
 
+/// Where the corners of a face are.
 fn corners(face: &[u32; 3], positions: &[DVec3]) -> [DVec3; 3] {
     face.map(|corner| positions[corner as usize])
 }

@@ -41,8 +41,9 @@ pub(crate) struct SmoothNormals(HashMap<[u64; 3], DVec3>);
 impl SmoothNormals {
     /// Adds a face.
     pub(crate) fn add(&mut self, corners: [DVec3; 3]) {
+        let normal = upright(corners);
         for corner in corners {
-            *self.0.entry(key_of(corner)).or_default() += upright(corners);
+            *self.0.entry(key_of(corner)).or_default() += normal;
         }
     }
 

@@ -4,14 +4,13 @@ use std::ops::Range;
 
 use arrayvec::ArrayVec;
 use rayon::prelude::*;
-use wide::f32x8;
 
-use super::vertices::{AMISS, Place, Projection, Vertices};
+use super::vertices::{AMISS, Place, Projection, Triangle, Vertices};
 use super::{TILE_HEIGHT, TILE_WIDTH, tiles_of};
 use crate::Rect;
 use crate::area::Winding;
 use crate::clip::{NdcVertex, clip_triangle, fan};
-use crate::edge::{SUBPIXELS, Subpixel};
+use crate::edge::SUBPIXELS;
 use crate::exact::{cut_to_guard_band, is_in_guard_band};
 use crate::mesh::Mesh;
 use crate::pipeline::RenderState;
@@ -47,20 +46,6 @@ const CHUNK: usize = 4096;
 pub(super) struct Front {
     vertices: Vertices,
     chunks: Vec<Chunk>,
-}
-
-/// A triangle as a tile needs it.
-#[derive(Clone, Copy)]
-pub(super) struct Triangle<'a> {
-    pub(super) places: [Place; 3],
-    pub(super) records: [&'a [f32x8]; 3],
-}
-
-impl Triangle<'_> {
-    /// The places, as [`edge`](crate::edge) knows them.
-    pub(super) fn vertices(&self) -> [Subpixel; 3] {
-        self.places.map(|place| place.map(i64::from))
-    }
 }
 
 /// What is the same for all triangles of a picture.

@@ -1,8 +1,9 @@
 //! What is hidden in all of a tile need not be drawn there.
 
 use super::edges::SMALL;
-use super::front::{Triangle, box_of, is_at_most, shared};
+use super::front::{box_of, is_at_most, shared};
 use super::tile::Frame;
+use super::vertices::Triangle;
 use crate::Rect;
 use crate::edge::{Coverage, Subpixel, center};
 use crate::shader::Shader;

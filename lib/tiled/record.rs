@@ -6,7 +6,7 @@ use std::hint::black_box;
 
 use wide::f32x8;
 
-use super::front::Triangle;
+use super::vertices::Triangle;
 use crate::lanes::{LANES, Lanes};
 use crate::varyings::EvenVaryings;
 

@@ -6,9 +6,10 @@ use prefetch_index::prefetch_index;
 use wide::{f32x8, i32x8};
 
 use super::edges::{SMALL, STEPS, Setup, Small, Spans};
-use super::front::{Front, Source, Triangle, box_of, is_at_most, shared};
+use super::front::{Front, Source, box_of, is_at_most, shared};
 use super::occlusion::{NOTHING_IS_HIDDEN, coverage_of, depth_range, hidden_behind};
 use super::record::{Ways, even};
+use super::vertices::Triangle;
 use super::{Band, TILE_HEIGHT};
 use crate::depth::DepthTest;
 use crate::edge::gradients_between;

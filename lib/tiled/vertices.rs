@@ -9,10 +9,9 @@ use rayon::prelude::*;
 use wide::{CmpEq, CmpGe, CmpGt, CmpLe, f32x8, f64x4, i64x4};
 
 use super::edges::NO_FRACTIONS;
-use super::front::Triangle;
 use crate::Rect;
 use crate::clip::{ClipTest, ClipVertex, NdcVertex, Plane};
-use crate::edge::{FARTHEST, SUBPIXELS, snap};
+use crate::edge::{FARTHEST, SUBPIXELS, Subpixel, snap};
 use crate::exact::GUARD_BAND;
 use crate::interpolate::Interpolation;
 use crate::lanes::LANES;
@@ -38,6 +37,20 @@ pub(super) struct Vertices {
 /// The vertex is not finite, beyond the guard band or too far away on the screen: triangles of it cannot be drawn as they
 /// are.
 pub(super) const AMISS: u8 = 1 << 7;
+
+/// A triangle as a tile needs it.
+#[derive(Clone, Copy)]
+pub(super) struct Triangle<'a> {
+    pub(super) places: [Place; 3],
+    pub(super) records: [&'a [f32x8]; 3],
+}
+
+impl Triangle<'_> {
+    /// The places, as [`edge`](crate::edge) knows them.
+    pub(super) fn vertices(&self) -> [Subpixel; 3] {
+        self.places.map(|place| place.map(i64::from))
+    }
+}
 
 /// So many vertices are divided and snapped at a time.
 const AT_A_TIME: usize = 4;
