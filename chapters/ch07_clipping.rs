@@ -10,18 +10,14 @@ use std::process::ExitCode;
 
 use arrayvec::ArrayVec;
 use glam::{DVec4, dvec2, dvec3, dvec4};
-use rasterbook::clip::{
-    ClipTest, ClipVertex, ClipVolume, NdcVertex, Plane, clip_polygon, clip_triangle, fan,
-};
-use rasterbook::depth::{DepthEncoding, Target};
-use rasterbook::interpolate::Projected;
+use rasterbook::clip::{ClipTest, ClipVolume, NdcVertex, Plane, clip_polygon, fan};
+use rasterbook::depth::DepthEncoding;
+use rasterbook::figure::{Chapter, Variant};
+use rasterbook::interpolate::{Projected, ScreenVertex};
 use rasterbook::line::{StepAxis, dda};
-use rasterbook::probe::Assembled;
-use rasterbook::program::{Chapter, Variant};
-use rasterbook::scanline::Corner;
 use rasterbook::texture::{AddressMode, Texture};
 use rasterbook::transform::perspective;
-use rasterbook::{Color, Framebuffer, Rect};
+use rasterbook::{ClipVertex, Color, Framebuffer, Rect, Target};
 
 pub(crate) const CHAPTER: Chapter = Chapter {
     name: "ch07_clipping",
@@ -53,15 +49,14 @@ fn draw(
     texel: impl Fn([f64; 2]) -> Color,
 ) {
     let planes = volume.planes(Default::default());
-    target.color.tell(|probe| probe.assembled(&Assembled::new(&triangle, &planes, ClipTest::BeforeDivide)));
-    for piece in fan(clip_triangle(triangle, &planes, ClipTest::BeforeDivide)) {
-        let corners = piece.map(|vertex| {
+    for piece in fan(target.clip_triangle(triangle, &planes, ClipTest::BeforeDivide)) {
+        let on_screen = piece.map(|vertex| {
             let divided = NdcVertex::from(vertex);
             let projected = Projected { w: divided.w, values: divided.varyings };
-            // a + b/z changes evenly on the screen: it is stepped beside t′, and needs no correction.
-            Corner { position: to_screen(divided), attributes: (projected, divided.position.z) }
+            // a + b/z changes linearly on the screen: it is stepped beside t′, and needs no correction.
+            ScreenVertex { position: to_screen(divided), varyings: (projected, divided.position.z) }
         });
-        target.fill(corners, &texel);
+        target.fill(on_screen, &texel);
     }
 }
 // ANCHOR_END: draw
@@ -148,12 +143,12 @@ fn polygon(framebuffer: &mut Framebuffer) {
     ];
     let outline = corners.map(|(x, y)| ClipVertex { position: dvec4(x, y, 0.0, 1.0), varyings: [] });
     // Kept is what lies left of the line x = 190 + y / 20; a plane before the divide, with ω = 1, is a line.
-    let plane = Plane::through_eye(dvec4(-1.0, 0.05, 0.0, 190.0));
+    let plane = Plane::homogeneous(dvec4(-1.0, 0.05, 0.0, 190.0));
     let kept: ArrayVec<ClipVertex<0>, 16> = clip_polygon(&outline, &plane, ClipTest::BeforeDivide);
 
     let line = |framebuffer: &mut Framebuffer, a: DVec4, b: DVec4, color| {
         let [a, b] = [a, b].map(|p| dvec2(p.x, p.y));
-        dda(a, b, StepAxis::Longer, framebuffer.window(), |x, y| framebuffer.set(x, y, color));
+        dda(a, b, StepAxis::Longer, framebuffer.scissor(), |x, y| framebuffer.set(x, y, color));
     };
     let right = dvec4(330.0, 0.0, 0.0, 0.0);
     for shift in [DVec4::ZERO, right] {

@@ -9,25 +9,33 @@
 //! assert_eq!(error.to_string(), "folder/bricks.png: is empty");
 //! ```
 
+use std::error::Error;
 use std::fmt;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 use image::{DynamicImage, ImageFormat, ImageReader, Limits};
 
+use crate::color::Color;
+use crate::framebuffer::Framebuffer;
 use crate::texture::Texture;
-use crate::{Color, Framebuffer};
 
 /// Why a file cannot be used.
 #[derive(Debug)]
 pub struct FileError {
     path: PathBuf,
     cause: String,
+    source: Option<Box<dyn Error + Send + Sync>>,
 }
 
 impl FileError {
     pub(crate) fn new(path: &Path, cause: impl fmt::Display) -> Self {
-        Self { path: path.to_owned(), cause: cause.to_string() }
+        Self { path: path.to_owned(), cause: cause.to_string(), source: None }
+    }
+
+    /// The cause is an error of another layer, which is kept.
+    pub(crate) fn from_source(path: &Path, source: impl Error + Send + Sync + 'static) -> Self {
+        Self { path: path.to_owned(), cause: source.to_string(), source: Some(Box::new(source)) }
     }
 }
 
@@ -37,14 +45,18 @@ impl fmt::Display for FileError {
     }
 }
 
-impl std::error::Error for FileError {}
+impl Error for FileError {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        self.source.as_deref().map(|source| source as &(dyn Error + 'static))
+    }
+}
 
 /// What is odd about a file that can be used all the same.
 pub type Warnings = Vec<String>;
 
 /// The bytes of a file: not of a folder, nor of a device that never ends.
 pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>, FileError> {
-    let failure = |error| FileError::new(path, error);
+    let failure = |error| FileError::from_source(path, error);
     let metadata = std::fs::metadata(path).map_err(failure)?;
     if !metadata.is_file() {
         return Err(FileError::new(path, "is no file"));
@@ -85,7 +97,7 @@ pub fn decode_texture(bytes: &[u8], path: &Path) -> Result<(Texture, ImageFormat
     limits.max_image_height = Some(Framebuffer::MAX_SIDE);
     limits.max_alloc = Some(1 << 30);
     reader.limits(limits);
-    let image = reader.decode().map_err(|error| FileError::new(path, error))?;
+    let image = reader.decode().map_err(|error| FileError::from_source(path, error))?;
     if image.width() == 0 || image.height() == 0 {
         return Err(FileError::new(path, "has no pixels"));
     }

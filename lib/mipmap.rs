@@ -16,9 +16,9 @@
 use std::array::from_fn;
 use std::sync::Arc;
 
-use crate::Color;
-use crate::framebuffer::Rounding;
+use crate::color::Color;
 use crate::interpolate::linear;
+use crate::merge::Rounding;
 use crate::real::Real;
 use crate::texture::{AddressMode, Texture, bilinear};
 

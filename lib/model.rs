@@ -26,7 +26,7 @@ use std::fs::File;
 use std::io::{BufReader, Cursor, Read};
 use std::path::Path;
 
-use crate::Color;
+use crate::color::Color;
 use crate::files::{FileError, Warnings, load_texture, read_file};
 use crate::mesh::Mesh;
 use crate::normals::{SmoothNormals, face_normal};

@@ -17,7 +17,7 @@
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use crate::Color;
+use crate::color::Color;
 
 /// A number with the four operations, which are exact IEEE operations: one rounding each, nothing fused.
 pub trait Real:

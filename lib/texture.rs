@@ -15,7 +15,7 @@
 
 use std::sync::Arc;
 
-use crate::Color;
+use crate::color::Color;
 use crate::interpolate::linear;
 use crate::real::Real;
 

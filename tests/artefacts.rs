@@ -4,7 +4,7 @@
 mod chapters;
 
 use chapters::{CHAPTERS, variant};
-use rasterbook::program::Mistake;
+use rasterbook::figure::Mistake;
 use rasterbook::{Color, Framebuffer};
 
 /// The mistakes that a test below looks for.
@@ -60,7 +60,7 @@ const GREEN: Color = Color::rgb(80, 180, 90);
 fn draw(chapter: &str, name: &str) -> Framebuffer {
     let variant = variant(chapter, name);
     let subject = variant.subject().expect("assets");
-    variant.draw(&variant.sitting(subject.as_ref()))
+    variant.draw(&variant.options(subject.as_ref()))
 }
 
 fn count(picture: &Framebuffer, is_meant: impl Fn(i32, i32, Color) -> bool) -> usize {

@@ -16,7 +16,7 @@ use std::process::{Command, ExitCode};
 
 use chapters::CHAPTERS;
 use libtest_mimic::{Arguments, Failed, Trial};
-use rasterbook::program::Mistake;
+use rasterbook::figure::Mistake;
 
 fn main() -> ExitCode {
     // A failed comparison is told once, by its test.

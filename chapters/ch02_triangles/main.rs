@@ -13,7 +13,7 @@ mod scanlines;
 
 use std::process::ExitCode;
 
-use rasterbook::program::{Chapter, Variant};
+use rasterbook::figure::{Chapter, Variant};
 
 pub(crate) const CHAPTER: Chapter = Chapter {
     name: "ch02_triangles",

@@ -17,7 +17,7 @@ mod walls;
 
 use std::process::ExitCode;
 
-use rasterbook::program::{Animation, Chapter, Variant};
+use rasterbook::figure::{Animation, Chapter, Variant};
 
 /// 360 frames, a degree each.
 const TURN: Animation = Animation { frames: 360, rate: 30 };

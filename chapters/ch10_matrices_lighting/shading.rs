@@ -3,16 +3,11 @@
 use std::f64::consts::{PI, TAU};
 
 use glam::{DMat3, DMat4, DVec3, dvec3};
-use rasterbook::Color;
-use rasterbook::clip::ClipVertex;
 use rasterbook::cull::CullMode;
+use rasterbook::figure::Canvas;
 use rasterbook::light::{Highlight, Light, Material, normalize};
-use rasterbook::mesh::Mesh;
-use rasterbook::pipeline::RenderState;
-use rasterbook::program::Canvas;
-use rasterbook::real::Real;
-use rasterbook::shader::{Shaded, Shader};
 use rasterbook::transform::{Frustum, normal_matrix, rotate_x_to_y, scale, translate};
+use rasterbook::{ClipVertex, Color, Mesh, Real, RenderState, Shaded, Shader};
 
 use super::degrees;
 

@@ -1,15 +1,10 @@
 //! What the numbers of a color mean: light reckoned with stored numbers, and with amounts of light.
 
 use glam::{DVec2, DVec4, dvec4};
-use rasterbook::Color;
-use rasterbook::clip::ClipVertex;
+use rasterbook::figure::Canvas;
 use rasterbook::light::{lambert, normalize};
-use rasterbook::mesh::Mesh;
-use rasterbook::pipeline::RenderState;
-use rasterbook::program::Canvas;
-use rasterbook::real::Real;
-use rasterbook::shader::{Shaded, Shader};
 use rasterbook::srgb::{decode, encode};
+use rasterbook::{ClipVertex, Color, Mesh, Real, RenderState, Shaded, Shader};
 
 // ANCHOR: space
 /// In which numbers light is added and multiplied.

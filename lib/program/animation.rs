@@ -8,9 +8,10 @@ use std::time::Duration;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use rayon::prelude::*;
 
-use super::chapter::Animation;
-use super::output::{AnimationFormat, rgb_bytes};
-use crate::{Color, Framebuffer};
+use super::output::AnimationFormat;
+use crate::color::Color;
+use crate::figure::Animation;
+use crate::framebuffer::Framebuffer;
 
 /// How much memory the frames that are drawn at a time may take.
 const BATCH_BYTES: u64 = 1 << 28;
@@ -76,7 +77,7 @@ fn encode_png(animation: Animation, draw: Draw<'_>) -> Result<Vec<u8>, Box<dyn E
     for_each_frame(
         animation.frames,
         (width, height),
-        |frame| rgb_bytes(&draw(frame)),
+        |frame| draw(frame).rgb_from_top(),
         |pixels| Ok(writer.write_image_data(&pixels)?),
     )?;
     writer.finish()?;
@@ -112,7 +113,7 @@ fn gif_frame(picture: &Framebuffer) -> gif::Frame<'static> {
     let runs: Vec<&[Color]> = picture.rows_from_top().flat_map(|row| row.chunk_by(|a, b| a == b)).collect();
     let colors: BTreeSet<[u8; 3]> = runs.iter().map(|run| run[0].channels()).collect();
     if colors.len() > 256 {
-        return gif::Frame::from_rgb_speed(width, height, &rgb_bytes(picture), 10);
+        return gif::Frame::from_rgb_speed(width, height, &picture.rgb_from_top(), 10);
     }
     let palette: Vec<[u8; 3]> = colors.into_iter().collect();
     let mut pixels = Vec::with_capacity(usize::from(width) * usize::from(height));

@@ -6,10 +6,10 @@ use std::path::PathBuf;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 
-use super::canvas::RasterizerChoice;
-use super::chapter::{Chapter, Mistake, Variant};
-use super::picture::Zoom;
-use crate::Framebuffer;
+use crate::figure::picture::Zoom;
+use crate::figure::{Chapter, Mistake, RasterizerChoice, Variant};
+use crate::framebuffer::Framebuffer;
+use crate::rect::Pixel;
 
 /// The most pixels that `--size` may ask for: a picture of 8192×8192.
 const MAX_PIXELS: u64 = 1 << 26;
@@ -31,7 +31,7 @@ pub(super) struct Request {
     pub(super) as_is: bool,
     pub(super) flat: bool,
     pub(super) rasterizer: Option<RasterizerChoice>,
-    pub(super) inspect: Option<(i32, i32)>,
+    pub(super) inspect: Option<Pixel>,
     pub(super) format: Format,
     pub(super) verbose: bool,
     pub(super) steps: bool,
@@ -171,10 +171,10 @@ fn what_to_tell() -> [Arg; 5] {
 
 /// Which rasterizer the pipeline ends with.
 fn rasterizer(chapter: &Chapter) -> Arg {
-    let names = RasterizerChoice::ALL.map(RasterizerChoice::name);
+    let names = RasterizerChoice::ALL.iter().map(|choice| choice.name());
     let parse = PossibleValuesParser::new(names).map(|name| {
-        let named = RasterizerChoice::ALL.into_iter().find(|choice| choice.name() == name);
-        named.unwrap_or_default()
+        let named = RasterizerChoice::ALL.iter().find(|choice| choice.name() == name);
+        named.copied().unwrap_or_default()
     });
     option(
         "rasterizer",
@@ -240,7 +240,7 @@ fn parse_size(text: &str) -> Result<(u32, u32), String> {
     Ok((width, height))
 }
 
-fn parse_pixel(text: &str) -> Result<(i32, i32), String> {
+fn parse_pixel(text: &str) -> Result<Pixel, String> {
     let coordinates = text
         .split_once(',')
         .and_then(|(x, y)| Some((x.trim().parse::<i32>().ok()?, y.trim().parse::<i32>().ok()?)));

@@ -6,16 +6,13 @@ use std::ops::Range;
 use bytemuck::cast;
 use wide::{CmpEq, CmpGt, CmpLt, f64x4, i16x8, i32x8};
 
-use super::TILE_HEIGHT;
-use super::vertices::Place;
-use crate::Rect;
-use crate::edge::{SUBPIXELS, is_top_left};
-use crate::lanes::{LANES, Lanes};
+use super::bands::TILE_HEIGHT;
+use super::lanes::{LANES, Lanes};
+use super::snapped::{NO_FRACTIONS, SnappedPosition};
+use crate::exact::edge::{SUBPIXELS, is_top_left};
+use crate::rect::{Pixel, Rect};
 
 const PIXEL: i32 = SUBPIXELS as i32;
-
-/// 1.5 · 2⁵²: a sum with it has no room for fractions, and its last bits are the nearest whole number.
-pub(super) const NO_FRACTIONS: f64 = 6_755_399_441_055_744.0;
 
 /// The cross product of two places, seen from the origin: the edge function there of the edge between them.
 #[inline(always)]
@@ -52,7 +49,7 @@ pub(super) struct Setup {
 }
 
 impl Setup {
-    pub(super) fn new(places: [Place; 3]) -> Self {
+    pub(super) fn new(places: [SnappedPosition; 3]) -> Self {
         // Without change to the right a row is covered, or it is not: a bound far to the right of all, or to the left.
         const FAR: f64 = 1e6;
         let (zero, half, one, infinity) = (f64x4::ZERO, f64x4::HALF, f64x4::ONE, f64x4::splat(f64::INFINITY));
@@ -185,7 +182,7 @@ pub(super) const STEPS: [f32; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 impl Small {
     /// The edges, seen from the center of a pixel. Inlined, so that the places stay in registers.
     #[inline(always)]
-    pub(super) fn new(places: [Place; 3], [x, y]: [i32; 2]) -> Self {
+    pub(super) fn new(places: [SnappedPosition; 3], (x, y): Pixel) -> Self {
         let [a, b, c] =
             places.map(|place| [place[0] - (x * PIXEL + PIXEL / 2), place[1] - (y * PIXEL + PIXEL / 2)]);
         // The three of them make up the area.
@@ -249,14 +246,14 @@ impl Small {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::edge::{Coverage, center};
-    use crate::tiled::front::{box_of, is_at_most, shared};
+    use crate::exact::edge::{Coverage, center};
+    use crate::tiled::snapped::{box_of, is_at_most, shared};
     use proptest::prelude::*;
 
     const COLUMNS: i32 = 20_000;
 
     /// Corners in a square of some size, here or there, on a coarse grid or a fine one; some as thin as can be.
-    fn triangle() -> impl Strategy<Value = [Place; 3]> {
+    fn triangle() -> impl Strategy<Value = [SnappedPosition; 3]> {
         let corners = prop::array::uniform3((0.0..1.0, 0.0..1.0));
         let size = prop_oneof![Just(3.0), Just(30.0), Just(3000.0), Just(90_000.0)];
         // Half pixels: edges run through centers.
@@ -318,7 +315,7 @@ mod tests {
             // Rows may be missing below, which belong to another tile.
             let window = Rect { bottom: i32::max(whole.bottom + below, 0), ..Rect::sized(2000, 2000) };
             let Some(area) = shared(whole, window) else { return Ok(()) };
-            let small = Small::new(places, [area.left, area.bottom]);
+            let small = Small::new(places, (area.left, area.bottom));
             let bits_of = |weights: [f32; 2]| weights.map(f32::to_bits);
             prop_assert_eq!(bits_of(small.weight_step()), bits_of(coverage.weight_step()));
             let covered = small.covered(area);

@@ -5,16 +5,16 @@ use std::ops::Range;
 use arrayvec::ArrayVec;
 use rayon::prelude::*;
 
-use super::vertices::{AMISS, Place, Projection, Triangle, Vertices};
-use super::{TILE_HEIGHT, TILE_WIDTH, tiles_of};
-use crate::Rect;
+use super::bands::{TILE_HEIGHT, TILE_WIDTH, tiles_of};
+use super::snapped::{SnappedPosition, box_of, shared, signed_area};
+use super::vertices::{AMISS, Projection, Triangle, Vertices};
 use crate::area::Winding;
 use crate::clip::{NdcVertex, clip_triangle, fan};
-use crate::edge::SUBPIXELS;
 use crate::exact::{cut_to_guard_band, is_in_guard_band};
 use crate::mesh::Mesh;
-use crate::pipeline::RenderState;
+use crate::rect::Rect;
 use crate::shader::Shader;
+use crate::state::RenderState;
 
 /// Where triangles come from.
 pub(super) enum Source<'a, S: Shader<N>, const N: usize> {
@@ -221,7 +221,7 @@ impl Chunk {
     ///
     /// Inlined, so that the places stay in registers: what turns away costs little else.
     #[inline(always)]
-    fn add(&mut self, number: u32, places: [Place; 3], context: &Context<'_>) {
+    fn add(&mut self, number: u32, places: [SnappedPosition; 3], context: &Context<'_>) {
         let area = signed_area(places);
         let is_culled = if area > 0 { context.culls_counterclockwise } else { context.culls_clockwise };
         if area == 0 || is_culled {
@@ -236,44 +236,4 @@ impl Chunk {
         }
     }
     // ANCHOR_END: bin
-}
-
-/// Twice the area of a triangle in 1/256 × 1/256 pixel, positive against the clock.
-fn signed_area([a, b, c]: [Place; 3]) -> i64 {
-    let difference = |to: Place, axis: usize| i64::from(to[axis]) - i64::from(a[axis]);
-    difference(b, 0) * difference(c, 1) - difference(b, 1) * difference(c, 0)
-}
-
-/// The pixels whose centers lie in the bounding box of a triangle, in the picture or not.
-///
-/// As [`Coverage::bounding_box`](crate::edge::Coverage::bounding_box), but in the 32 bits that places have here: it is
-/// asked for every triangle, and once more in each of its tiles.
-#[inline(always)]
-pub(super) fn box_of([a, b, c]: [Place; 3]) -> Rect {
-    const PIXEL: i32 = SUBPIXELS as i32;
-    let range = |axis: usize| {
-        let (low, high) = (a[axis].min(b[axis]).min(c[axis]), a[axis].max(b[axis]).max(c[axis]));
-        // The first center not below `low`, and the one after the last not above `high`; shifts round down.
-        ((low + PIXEL / 2 - 1) >> 8, ((high - PIXEL / 2) >> 8) + 1)
-    };
-    let ((left, right), (bottom, top)) = (range(0), range(1));
-    Rect { left, bottom, right, top }
-}
-
-/// Whether a rectangle is no larger than a square.
-#[inline(always)]
-pub(super) fn is_at_most(Rect { left, bottom, right, top }: Rect, side: i32) -> bool {
-    right - left <= side && top - bottom <= side
-}
-
-/// What two rectangles share, if anything.
-#[inline(always)]
-pub(super) fn shared(a: Rect, b: Rect) -> Option<Rect> {
-    let rect = Rect {
-        left: a.left.max(b.left),
-        bottom: a.bottom.max(b.bottom),
-        right: a.right.min(b.right),
-        top: a.top.min(b.top),
-    };
-    (rect.left < rect.right && rect.bottom < rect.top).then_some(rect)
 }

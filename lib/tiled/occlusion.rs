@@ -1,11 +1,11 @@
 //! What is hidden in all of a tile need not be drawn there.
 
 use super::edges::SMALL;
-use super::front::{box_of, is_at_most, shared};
-use super::tile::Frame;
+use super::frame::Frame;
+use super::snapped::{box_of, is_at_most, shared};
 use super::vertices::Triangle;
-use crate::Rect;
-use crate::edge::{Coverage, Subpixel, center};
+use crate::exact::edge::{Coverage, Subpixel, center};
+use crate::rect::Rect;
 use crate::shader::Shader;
 
 /// No depth is behind this one.

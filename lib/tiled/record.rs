@@ -6,8 +6,8 @@ use std::hint::black_box;
 
 use wide::f32x8;
 
+use super::lanes::{LANES, Lanes};
 use super::vertices::Triangle;
-use crate::lanes::{LANES, Lanes};
 use crate::varyings::EvenVaryings;
 
 /// A record of 2 + N numbers: the first block, and as many more as it takes. (What is too much is never read.)

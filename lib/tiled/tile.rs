@@ -1,40 +1,27 @@
 //! One tile: coverage, depth test, shading and writing of the triangles in its bin.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 
 use prefetch_index::prefetch_index;
 use wide::{f32x8, i32x8};
 
+use super::bands::{Band, TILE_HEIGHT};
 use super::edges::{SMALL, STEPS, Setup, Small, Spans};
-use super::front::{Front, Source, box_of, is_at_most, shared};
+use super::frame::Frame;
+use super::lanes::{ALL, LANES, LaneMask, Lanes, is_greater, is_less_or_equal, packed};
 use super::occlusion::{NOTHING_IS_HIDDEN, coverage_of, depth_range, hidden_behind};
 use super::record::{Ways, even};
+use super::snapped::{box_of, is_at_most, shared};
 use super::vertices::Triangle;
-use super::{Band, TILE_HEIGHT};
+use crate::color::Color;
 use crate::depth::DepthTest;
-use crate::edge::gradients_between;
+use crate::exact::edge::gradients_between;
 use crate::interpolate::{Interpolation, Projected};
-use crate::lanes::{ALL, LANES, LaneMask, Lanes, is_greater, is_less_or_equal, packed};
-use crate::merge::{Blend, Merge};
-use crate::pipeline::RenderState;
+use crate::merge::{Blend, Merge, Rounding};
 use crate::real::{Mask, Real};
+use crate::rect::Rect;
 use crate::shader::{Paint, Shaded, Shader};
 use crate::varyings::{Derivatives, EvenVaryings};
-use crate::{Color, Rect};
-
-/// What all tiles of a picture share.
-pub(super) struct Frame<'a, S: Shader<N>, const N: usize> {
-    pub(super) shader: &'a S,
-    pub(super) state: &'a RenderState,
-    pub(super) front: &'a Front,
-    pub(super) source: &'a Source<'a, S, N>,
-    /// Whether all options that matter for a pixel have their default values: the most common case.
-    pub(super) is_plain: bool,
-    /// How wide the picture is.
-    pub(super) columns: i32,
-    /// Whether the shader has been seen to throw fragments of larger triangles away: only these can hide others.
-    pub(super) discards: AtomicBool,
-}
 
 /// The tile of a band that is being drawn.
 pub(super) struct Tile<'a> {
@@ -55,15 +42,6 @@ struct Queue {
     records: [f32x8; LANES],
     /// Where in the band each fragment is.
     places: [usize; LANES],
-}
-
-impl<S: Shader<N>, const N: usize> Frame<'_, S, N> {
-    /// Notes whether the shader has thrown away any.
-    fn note(&self, thrown_away: i32) {
-        if thrown_away != 0 {
-            self.discards.store(true, Ordering::Relaxed);
-        }
-    }
 }
 
 impl<'a> Tile<'a> {
@@ -134,12 +112,12 @@ impl<'a> Tile<'a> {
         triangle: Triangle<'_>,
         area: Rect,
     ) {
-        let setup = Small::new(triangle.places, [area.left, area.bottom]);
+        let setup = Small::new(triangle.places, (area.left, area.bottom));
         let ways = Ways::<N>::of(triangle);
         let step = ways.change(setup.weight_step()).first;
         let mut covered = setup.covered(area);
         let (firsts, weights) = setup.starts(covered);
-        let (corner, width) = (self.band.place([area.left, area.bottom]), self.band.stride);
+        let (corner, width) = (self.band.place((area.left, area.bottom)), self.band.stride);
         while covered != 0 {
             let bit = covered.trailing_zeros() as usize;
             covered &= covered - 1;
@@ -231,13 +209,6 @@ impl<'a> Tile<'a> {
     }
 }
 
-/// Whether these options for a pixel are the default ones.
-pub(super) fn is_plain(state: &RenderState) -> bool {
-    state.merge == Merge::default()
-        && state.depth_encoding.is_linear_on_screen()
-        && state.interpolation == Interpolation::PerspectiveCorrect
-}
-
 /// Draws the rows of a triangle, eight pixels at a time from the first that is covered.
 ///
 /// A function by itself, so that the compiler knows that nothing that is written here changes what is read.
@@ -251,7 +222,7 @@ fn draw_rows<const PLAIN: bool, S: Shader<N>, const N: usize>(
     band: &mut Band<'_>,
 ) {
     let (bottom_left, stride, to_next_band) =
-        (band.place([area.left, area.bottom]), band.stride, band.to_next_band);
+        (band.place((area.left, area.bottom)), band.stride, band.to_next_band);
     let (colors, depths) = (&mut *band.colors, &mut *band.depths);
     let ways = Ways::<N>::of(triangle);
     let step = ways.change(setup.weight_step()).spread();
@@ -378,5 +349,5 @@ fn opaque(color: Paint<Lanes>) -> i32x8 {
 
 fn blended(blend: Blend, color: [f32; 4], there: Color) -> Color {
     let there = there.to_f64().map(|channel| channel as f32);
-    crate::framebuffer::Rounding::Nearest.color(blend.apply(color, there))
+    Rounding::Nearest.color(blend.apply(color, there))
 }

@@ -8,26 +8,23 @@ use glam::{DVec3, DVec4, dvec3};
 use rayon::prelude::*;
 use wide::{CmpEq, CmpGe, CmpGt, CmpLe, f32x8, f64x4, i64x4};
 
-use super::edges::NO_FRACTIONS;
-use crate::Rect;
+use super::lanes::LANES;
+use super::snapped::{NO_FRACTIONS, SnappedPosition};
 use crate::clip::{ClipTest, ClipVertex, NdcVertex, Plane};
-use crate::edge::{FARTHEST, SUBPIXELS, Subpixel, snap};
 use crate::exact::GUARD_BAND;
+use crate::exact::edge::{FARTHEST, SUBPIXELS, Subpixel, snap};
 use crate::interpolate::Interpolation;
-use crate::lanes::LANES;
 use crate::mesh::Mesh;
-use crate::pipeline::RenderState;
+use crate::rect::Rect;
 use crate::shader::Shader;
+use crate::state::RenderState;
 use crate::transform::Viewport;
 use crate::varyings::EvenVaryings;
-
-/// A place on the screen in 1/256 pixel.
-pub(super) type Place = [i32; 2];
 
 /// Vertices, made ready for triangles.
 #[derive(Debug, Default)]
 pub(super) struct Vertices {
-    places: Vec<Place>,
+    places: Vec<SnappedPosition>,
     /// Which planes a vertex lies outside of, a bit each; and the bit below.
     outside: Vec<u8>,
     /// 1/ω, depth, V/ω: as many blocks of eight numbers for a vertex as it takes.
@@ -41,12 +38,12 @@ pub(super) const AMISS: u8 = 1 << 7;
 /// A triangle as a tile needs it.
 #[derive(Clone, Copy)]
 pub(super) struct Triangle<'a> {
-    pub(super) places: [Place; 3],
+    pub(super) places: [SnappedPosition; 3],
     pub(super) records: [&'a [f32x8]; 3],
 }
 
 impl Triangle<'_> {
-    /// The places, as [`edge`](crate::edge) knows them.
+    /// The places, as [`edge`](crate::exact::edge) knows them.
     pub(super) fn vertices(&self) -> [Subpixel; 3] {
         self.places.map(|place| place.map(i64::from))
     }
@@ -125,7 +122,7 @@ impl Vertices {
         &mut self,
         corners: &[NdcVertex<N>; 3],
         projection: &Projection<'_>,
-    ) -> Option<[Place; 3]> {
+    ) -> Option<[SnappedPosition; 3]> {
         let [a, b, c] = corners.each_ref().map(|vertex| projection.place_of(vertex));
         let places = [a?, b?, c?];
         let first = self.records.len();
@@ -144,7 +141,7 @@ impl Vertices {
 
     /// Where vertices are.
     #[inline(always)]
-    pub(super) fn places(&self, corners: [usize; 3]) -> [Place; 3] {
+    pub(super) fn places(&self, corners: [usize; 3]) -> [SnappedPosition; 3] {
         corners.map(|corner| self.places[corner])
     }
 
@@ -170,7 +167,7 @@ impl Vertices {
 
 /// Some vertices, one after the other, to be filled.
 struct Slots<'a> {
-    places: &'a mut [Place],
+    places: &'a mut [SnappedPosition],
     outside: &'a mut [u8],
     records: &'a mut [f32x8],
 }
@@ -207,7 +204,7 @@ impl Side {
 }
 
 /// Four vertices: where they are, what each of them lies outside of, and their positions in NDC.
-type FourVertices = ([Place; AT_A_TIME], [u8; AT_A_TIME], [DVec3; AT_A_TIME]);
+type FourVertices = ([SnappedPosition; AT_A_TIME], [u8; AT_A_TIME], [DVec3; AT_A_TIME]);
 
 impl<'a> Projection<'a> {
     pub(super) fn new(state: &'a RenderState, window: Rect) -> Self {
@@ -217,7 +214,7 @@ impl<'a> Projection<'a> {
     }
 
     /// Where on the screen a vertex is, if it is near enough.
-    fn place_of<const N: usize>(&self, vertex: &NdcVertex<N>) -> Option<Place> {
+    fn place_of<const N: usize>(&self, vertex: &NdcVertex<N>) -> Option<SnappedPosition> {
         snap(self.viewport.pixel_areas(vertex.position)).map(|place| place.map(|along| along as i32))
     }
 

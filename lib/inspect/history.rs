@@ -2,7 +2,8 @@
 
 use std::fmt::{self, Write as _};
 
-use crate::Color;
+use crate::color::Color;
+use crate::rect::Pixel;
 
 /// Something that is told: one source for both forms.
 #[derive(Clone, Debug)]
@@ -65,7 +66,7 @@ pub struct History {
     pub(super) variant: &'static str,
     pub(super) frame: Option<u32>,
     /// The pixel, y up.
-    pub(super) pixel: (i32, i32),
+    pub(super) pixel: Pixel,
     /// Its row in the image file, 0 on top.
     pub(super) row: i32,
     pub(super) entries: Vec<Entry>,
@@ -74,7 +75,7 @@ pub struct History {
     /// The color that stands in the picture.
     pub(super) color: Color,
     /// The color that the last of the entries has left.
-    pub(super) told: Color,
+    pub(super) last_color: Color,
 }
 
 /// A number, rounded for people: about five digits that count.
@@ -199,11 +200,17 @@ impl History {
         self.color
     }
 
-    /// The color that the last of what is told has left. It is that of the picture, unless the program has shown another
+    /// The color that the last of the events has left. It is that of the picture, unless the program has shown another
     /// buffer afterwards, or drawn a line between enlarged pixels.
     #[must_use]
-    pub const fn told(&self) -> Color {
-        self.told
+    pub const fn last_color(&self) -> Color {
+        self.last_color
+    }
+
+    /// The same without what did not reach the pixel.
+    #[must_use]
+    pub fn without_misses(self) -> Self {
+        Self { others: Vec::new(), ..self }
     }
 
     /// The history as JSON: one object. Numbers have full precision; what is not finite is `null`.

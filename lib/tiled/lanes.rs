@@ -4,7 +4,7 @@
 //! operations in the same order as on one. So eight fragments are shaded in the time of one, to the same colors.
 //!
 //! ```
-//! use rasterbook::lanes::Lanes;
+//! use rasterbook::tiled::lanes::Lanes;
 //! use rasterbook::light::lambert;
 //! use rasterbook::real::Real;
 //!
@@ -19,7 +19,7 @@ use std::array::from_fn;
 use bytemuck::cast;
 use wide::{CmpEq, CmpGt, CmpLe, CmpLt, f32x8, i32x8};
 
-use crate::Color;
+use crate::color::Color;
 use crate::real::{Mask, Real};
 
 /// How many numbers.
@@ -181,7 +181,7 @@ pub(crate) fn packed(color: [Lanes; 3]) -> i32x8 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::framebuffer::Rounding;
+    use crate::merge::Rounding;
 
     const ODD: [f32; 8] = [-0.5, 0.0, 2.999_999, -3.0, 8_388_607.5, 1e30, -7.25, 254.5];
 
