@@ -1,7 +1,7 @@
 //! # Chapter 3: barycentric interpolation and textures
 //!
 //! **The corners have values: which value has a pixel between them?** The nearer a corner, the more it weighs. Along a
-//! straight line the weights change evenly, so that the scanline walk needs one addition a pixel.
+//! straight line the weights change linearly, so that the scanline walk needs one addition a pixel.
 //!
 //! New here: interpolation (`lib/interpolate.rs`) and textures (`lib/texture.rs`). The walk is that of chapter 2; what
 //! is stepped along with x is new. Book: chapter 3.

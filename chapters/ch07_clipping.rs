@@ -3,7 +3,7 @@
 //! **What if a triangle reaches behind the eye?** There the division turns everything round. What is not in front must
 //! be cut away before the divide, and for that edges must be straight before the divide, depth included.
 //!
-//! New here: the depth a + b/z, which changes evenly on the screen (`lib/depth.rs`, `lib/interpolate.rs`), and clipping
+//! New here: the depth a + b/z, which changes linearly on the screen (`lib/depth.rs`, `lib/interpolate.rs`), and clipping
 //! (`lib/clip.rs`). Book: chapter 7.
 
 use std::process::ExitCode;

@@ -1,8 +1,8 @@
 //! Chapters 7 and 8: cutting away what cannot be projected, or is not to be seen.
 //!
 //! Takes a polygon in clip space, before the perspective divide, and gives the part of it that lies inside a list of
-//! planes. Values need no correction here: before the divide, space is still straight, and what changes evenly along an
-//! edge in camera space changes evenly along it in clip space.
+//! planes. Values need no correction here: before the divide, space is still straight, and what changes linearly along an
+//! edge in camera space changes linearly along it in clip space.
 //!
 //! ```
 //! use glam::dvec4;
@@ -32,7 +32,7 @@ pub struct ClipVertex<const N: usize> {
 }
 
 impl<const N: usize> ClipVertex<N> {
-    /// The point at the parameter t between two vertices; position and values change evenly.
+    /// The point at the parameter t between two vertices; position and values change linearly.
     #[inline]
     fn between(a: Self, b: Self, t: f64) -> Self {
         Self {
@@ -110,7 +110,7 @@ pub enum ClipTest {
     /// NDC: x/ω is compared with 1, a mistake.
     ///
     /// - Cause: behind the eye ω is negative, and the division turns the comparison round: what is outside seems inside.
-    ///   Nor is x/ω even along an edge, so that the cut is made in the wrong place.
+    ///   Nor is x/ω linear along an edge, so that the cut is made in the wrong place.
     /// - Artefact: a triangle that passes the eye is cut where it should not be, or turns up where nothing is.
     /// - Remedy: [`ClipTest::BeforeDivide`]. Book, section 8.3; second note, the proof about w.
     AfterDivide,

@@ -144,7 +144,7 @@ proptest! {
             let step = varyings.change(coverage.weight_step());
             for y in 0..WINDOW.top {
                 let columns = coverage.covered_columns(WINDOW.columns(), y);
-                let start = varyings.even_at(coverage.weights(coverage.edge_values(center(columns.start, y))));
+                let start = varyings.linear_at(coverage.weights(coverage.edge_values(center(columns.start, y))));
                 for (count, x) in columns.enumerate() {
                     let even = start.moved(&step, R::of(count as f64));
                     let value: f64 = even.multiplied(Interpolation::PerspectiveCorrect).values[0].into();

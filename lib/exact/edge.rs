@@ -69,7 +69,7 @@ pub fn snap(position: DVec2) -> Option<Subpixel> {
 ///           a
 /// ```
 ///
-/// In units of 1/256 × 1/256 pixel. Positive on the left of the edge. From point to point it changes evenly, so that
+/// In units of 1/256 × 1/256 pixel. Positive on the left of the edge. From point to point it changes linearly, so that
 /// the next pixel costs one addition. Source: J. Pineda, A parallel algorithm for polygon rasterization, 1988.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EdgeFunction {

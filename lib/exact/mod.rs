@@ -147,11 +147,11 @@ fn draw_triangle<R: Scalar, S: Shader<N>, P: Probe + ?Sized, const N: usize>(
     let mut stages = FragmentStages { shader, state, rounding: Rounding::Nearest, target, probe };
     for y in area.rows() {
         let columns = coverage.covered_columns(area.columns(), y);
-        let start = varyings.even_at(coverage.weights(coverage.edge_values(center(columns.start, y))));
+        let start = varyings.linear_at(coverage.weights(coverage.edge_values(center(columns.start, y))));
         for (count, x) in columns.enumerate() {
-            let even = start.moved(&step, R::of(count as f64));
-            let point = even.multiplied(state.interpolation);
-            stages.draw((x, y), point, even.depth, |point| varyings.derivatives(point, gradients));
+            let linear = start.moved(&step, R::of(count as f64));
+            let point = linear.multiplied(state.interpolation);
+            stages.draw((x, y), point, linear.depth, |point| varyings.derivatives(point, gradients));
         }
     }
 }

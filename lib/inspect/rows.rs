@@ -241,7 +241,7 @@ fn parameters(triangle: &ScreenTriangle, hit: &Hit) -> [Field; 3] {
         Interpolation::PerspectiveCorrect => {
             ("perspective-correct", "V_p = (ωb Va + (ωa Vb − ωb Va) t′) / (ωb + (ωa − ωb) t′)")
         }
-        Interpolation::Reciprocal => ("reciprocal", "1/ω and V/ω evenly, V_p their quotient"),
+        Interpolation::Reciprocal => ("reciprocal", "1/ω and V/ω linearly, V_p their quotient"),
     };
     let rows = vec![("here".to_owned(), vec![Some(hit.edges[0]), Some(hit.edges[1]), Some(hit.along)])];
     let columns = ["left edge", "right edge", "along row"].map(str::to_owned).to_vec();

@@ -51,7 +51,7 @@ pub(super) fn hidden_behind<S: Shader<N>, const N: usize>(
     behind
 }
 
-/// The outermost centers of a rectangle: what changes evenly has its extremes there.
+/// The outermost centers of a rectangle: what changes linearly has its extremes there.
 fn corners(Rect { left, bottom, right, top }: Rect) -> [Subpixel; 4] {
     [(left, bottom), (right - 1, bottom), (left, top - 1), (right - 1, top - 1)].map(|(x, y)| center(x, y))
 }

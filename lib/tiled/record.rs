@@ -8,7 +8,7 @@ use wide::f32x8;
 
 use super::lanes::{LANES, Lanes};
 use super::vertices::Triangle;
-use crate::varyings::EvenVaryings;
+use crate::varyings::LinearVaryings;
 
 /// A record of 2 + N numbers: the first block, and as many more as it takes. (What is too much is never read.)
 #[derive(Clone, Copy)]
@@ -29,10 +29,10 @@ impl<const N: usize> Record<N> {
     /// By way of memory: taking a number out of a register, for all lanes, would keep those parts of the processor busy that
     /// the arithmetic needs. It changes nothing but the time.
     #[inline(always)]
-    pub(super) fn spread(self) -> EvenVaryings<Lanes, N> {
+    pub(super) fn spread(self) -> LinearVaryings<Lanes, N> {
         let Self { first, more } = self;
         let first = black_box(first.as_array_ref());
-        even(|k| {
+        linear(|k| {
             Lanes::splat(if k < LANES { first[k] } else { more[k / LANES - 1].as_array_ref()[k % LANES] })
         })
     }
@@ -80,6 +80,6 @@ impl<const N: usize> Ways<N> {
 
 /// What stands in a record, by its meaning.
 #[inline(always)]
-pub(super) fn even<const N: usize>(number: impl Fn(usize) -> Lanes) -> EvenVaryings<Lanes, N> {
-    EvenVaryings { distance: number(0), depth: number(1), values: from_fn(|k| number(k + 2)) }
+pub(super) fn linear<const N: usize>(number: impl Fn(usize) -> Lanes) -> LinearVaryings<Lanes, N> {
+    LinearVaryings { distance: number(0), depth: number(1), values: from_fn(|k| number(k + 2)) }
 }

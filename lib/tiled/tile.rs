@@ -10,7 +10,7 @@ use super::edges::{SMALL, STEPS, Setup, Small, Spans};
 use super::frame::Frame;
 use super::lanes::{ALL, LANES, LaneMask, Lanes, is_greater, is_less_or_equal, packed};
 use super::occlusion::{NOTHING_IS_HIDDEN, coverage_of, depth_range, hidden_behind};
-use super::record::{Ways, even};
+use super::record::{Ways, linear};
 use super::snapped::{box_of, is_at_most, shared};
 use super::vertices::Triangle;
 use crate::color::Color;
@@ -21,7 +21,7 @@ use crate::merge::{Blend, Merge, Rounding};
 use crate::real::{Mask, Real};
 use crate::rect::Rect;
 use crate::shader::{Paint, Shaded, Shader};
-use crate::varyings::{Derivatives, EvenVaryings};
+use crate::varyings::{Derivatives, LinearVaryings};
 
 /// The tile of a band that is being drawn.
 pub(super) struct Tile<'a> {
@@ -164,11 +164,11 @@ impl<'a> Tile<'a> {
         let Merge { depth_test, depth_write, blend } =
             if PLAIN { Merge::default() } else { frame.state.merge };
         let numbers = f32x8::transpose(self.queue.records);
-        let even = even(|k| numbers.get(k).copied().unwrap_or(f32x8::ZERO));
+        let linear = linear(|k| numbers.get(k).copied().unwrap_or(f32x8::ZERO));
         let interpolation = if PLAIN { Interpolation::PerspectiveCorrect } else { frame.state.interpolation };
-        let point: Projected<Lanes, N> = even.multiplied(interpolation);
+        let point: Projected<Lanes, N> = linear.multiplied(interpolation);
         let is_linear = PLAIN || frame.state.depth_encoding.is_linear_on_screen();
-        let depths = if is_linear { even.depth } else { point.w }.to_array();
+        let depths = if is_linear { linear.depth } else { point.w }.to_array();
         let shaded: Shaded<Lanes> = frame.shader.fragment(point.values);
         let kept = shaded.keep.bits();
         let opaque = opaque(shaded.color).to_array();
@@ -249,8 +249,8 @@ fn draw_rows<const PLAIN: bool, S: Shader<N>, const N: usize>(
             }
             let (colors, depths) = (eight(colors, place), eight(depths, place));
             fetch_ahead(to_next_band, colors, depths);
-            let even = start.moved(&step, right);
-            thrown_away |= draw_group::<PLAIN, S, N>(frame, even, &gradients, bits, colors, depths);
+            let linear = start.moved(&step, right);
+            thrown_away |= draw_group::<PLAIN, S, N>(frame, linear, &gradients, bits, colors, depths);
             place += LANES;
             count -= LANES as i32;
             right += Lanes::splat(LANES as f32);
@@ -278,8 +278,8 @@ fn fetch_ahead(to_next_band: usize, colors: &[Color; LANES], depths: &[f32; LANE
 #[inline(always)]
 fn draw_group<const PLAIN: bool, S: Shader<N>, const N: usize>(
     frame: &Frame<'_, S, N>,
-    even: EvenVaryings<Lanes, N>,
-    gradients: &Option<[EvenVaryings<Lanes, N>; 2]>,
+    linear: LinearVaryings<Lanes, N>,
+    gradients: &Option<[LinearVaryings<Lanes, N>; 2]>,
     covered: i32,
     colors: &mut [Color; LANES],
     depths: &mut [f32; LANES],
@@ -289,7 +289,7 @@ fn draw_group<const PLAIN: bool, S: Shader<N>, const N: usize>(
 
     // Depth first: what is hidden need not be shaded.
     let is_linear = PLAIN || state.depth_encoding.is_linear_on_screen();
-    let depth = if is_linear { even.depth } else { even.multiplied(interpolation).w };
+    let depth = if is_linear { linear.depth } else { linear.multiplied(interpolation).w };
     let stored = Lanes::new(*depths);
     let test = if PLAIN { DepthTest::LessOrEqual } else { state.merge.depth_test };
     let seen = covered & passes(test, depth, stored).bits();
@@ -297,7 +297,7 @@ fn draw_group<const PLAIN: bool, S: Shader<N>, const N: usize>(
         return 0;
     }
 
-    let point = even.multiplied(interpolation);
+    let point = linear.multiplied(interpolation);
     let shaded = match gradients {
         Some(gradients) => {
             let [dx, dy] = gradients.map(|change| change.derivative(&point, interpolation));

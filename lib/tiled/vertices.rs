@@ -19,7 +19,7 @@ use crate::rect::Rect;
 use crate::shader::Shader;
 use crate::state::RenderState;
 use crate::transform::Viewport;
-use crate::varyings::EvenVaryings;
+use crate::varyings::LinearVaryings;
 
 /// Vertices, made ready for triangles.
 #[derive(Debug, Default)]
@@ -173,7 +173,7 @@ struct Slots<'a> {
 }
 
 fn write_record<const N: usize>(vertex: &NdcVertex<N>, interpolation: Interpolation, record: &mut [f32x8]) {
-    let corner = EvenVaryings::<f32, N>::new(vertex, interpolation);
+    let corner = LinearVaryings::<f32, N>::new(vertex, interpolation);
     let mut numbers = [corner.distance, corner.depth].into_iter().chain(corner.values);
     for block in record {
         *block = f32x8::new(from_fn(|_| numbers.next().unwrap_or(0.0)));
