@@ -33,7 +33,7 @@ pub(crate) const CHAPTER: Chapter = Chapter {
             .source("section 5.5.4"),
         Variant::new("barycentric", barycentric, "the tilted square by weights: those of areas on the screen, each divided by its corner's ω")
             .source("first note"),
-        Variant::new("floor", floor, "a checkered floor to the horizon: every line is straight and the squares shrink linearly"),
+        Variant::new("floor", floor, "a checkered floor to the horizon: every line is straight, and the squares shrink towards the horizon"),
         Variant::new("floor-affine", floor_affine, "the same two triangles, interpolated on the screen: the floor folds along the diagonal")
             .mended_by("floor"),
     ],

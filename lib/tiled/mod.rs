@@ -5,7 +5,7 @@
 //! made ready once, however many triangles share it (`vertices.rs`), and triangles that turn away are gone before anything
 //! is computed for them (`front.rs`); triangles are sorted into *tiles*, rectangles of the picture that are small enough to
 //! stay near, and a row of tiles belongs to one thread (`front.rs`); within a tile, the covered part of a row is known by
-//! its ends (`edges.rs`), and values go on linearly from its first pixel (`record.rs`); triangles that cover only a few
+//! its ends (`edges.rs`), and values go on linearly from its first pixel (`packed.rs`); triangles that cover only a few
 //! pixels share the eight lanes with others (`tile.rs`); what is hidden in all of a tile is left out there
 //! (`occlusion.rs`); what is blank is not cleared again (`background.rs`); and while pixels are drawn, others that are soon
 //! cleared are fetched (`tile.rs`).
@@ -57,7 +57,7 @@ mod frame;
 mod front;
 pub mod lanes;
 mod occlusion;
-mod record;
+mod packed;
 mod snapped;
 mod tile;
 mod vertices;

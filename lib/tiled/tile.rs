@@ -10,7 +10,7 @@ use super::edges::{SMALL, STEPS, Setup, Small, Spans};
 use super::frame::Frame;
 use super::lanes::{ALL, LANES, LaneMask, Lanes, is_greater, is_less_or_equal, packed};
 use super::occlusion::{NOTHING_IS_HIDDEN, coverage_of, depth_range, hidden_behind};
-use super::record::{Ways, linear};
+use super::packed::{PackedTriangleVaryings, linear};
 use super::snapped::{box_of, is_at_most, shared};
 use super::vertices::Triangle;
 use crate::color::Color;
@@ -39,7 +39,7 @@ pub(super) struct Tile<'a> {
 struct Queue {
     count: usize,
     /// 1/ω, depth, V/ω of each fragment.
-    records: [f32x8; LANES],
+    packed: [f32x8; LANES],
     /// Where in the band each fragment is.
     places: [usize; LANES],
 }
@@ -51,7 +51,7 @@ impl<'a> Tile<'a> {
             band,
             rect: Rect::sized(0, 0),
             behind: NOTHING_IS_HIDDEN,
-            queue: Queue { count: 0, records: [f32x8::ZERO; LANES], places: [0; LANES] },
+            queue: Queue { count: 0, packed: [f32x8::ZERO; LANES], places: [0; LANES] },
             spans: Spans::NONE,
         }
     }
@@ -92,7 +92,7 @@ impl<'a> Tile<'a> {
         let Some(area) = shared(whole, self.rect) else { return };
         // Values are stepped from the first pixel of a row. It must be in this tile.
         let is_small = is_at_most(whole, SMALL as i32) && whole.left >= self.rect.left;
-        // A record of more than one block does not fit into the queue, nor do the gradients of a triangle.
+        // What takes more than one block does not fit into the queue, nor do the gradients of a triangle.
         if is_small && 2 + N <= LANES && !S::USES_DERIVATIVES {
             self.draw_small(frame, triangle, area);
         } else {
@@ -113,8 +113,8 @@ impl<'a> Tile<'a> {
         area: Rect,
     ) {
         let setup = Small::new(triangle.places, (area.left, area.bottom));
-        let ways = Ways::<N>::of(triangle);
-        let step = ways.change(setup.weight_step()).first;
+        let varyings = PackedTriangleVaryings::<N>::of(triangle);
+        let step = varyings.change(setup.weight_step()).first;
         let mut covered = setup.covered(area);
         let (firsts, weights) = setup.starts(covered);
         let (corner, width) = (self.band.place((area.left, area.bottom)), self.band.stride);
@@ -122,10 +122,10 @@ impl<'a> Tile<'a> {
             let bit = covered.trailing_zeros() as usize;
             covered &= covered - 1;
             let (row, column) = (bit / SMALL, bit % SMALL);
-            let start = ways.at([weights[0][row], weights[1][row]]).first;
+            let start = varyings.at([weights[0][row], weights[1][row]]).first;
             // The remainder only tells that it is a place in the list.
-            let record = start + step * f32x8::splat(STEPS[(column - firsts[row] as usize) % SMALL]);
-            self.enqueue(frame, record, corner + row * width + column);
+            let packed = start + step * f32x8::splat(STEPS[(column - firsts[row] as usize) % SMALL]);
+            self.enqueue(frame, packed, corner + row * width + column);
         }
     }
 
@@ -133,14 +133,14 @@ impl<'a> Tile<'a> {
     fn enqueue<S: Shader<N>, const N: usize>(
         &mut self,
         frame: &Frame<'_, S, N>,
-        record: f32x8,
+        packed: f32x8,
         place: usize,
     ) {
         // Stored depths never grow: what fails now fails later.
-        if frame.is_plain && record.as_array_ref()[1] > self.band.depths[place] {
+        if frame.is_plain && packed.as_array_ref()[1] > self.band.depths[place] {
             return;
         }
-        self.queue.records[self.queue.count] = record;
+        self.queue.packed[self.queue.count] = packed;
         self.queue.places[self.queue.count] = place;
         self.queue.count += 1;
         if self.queue.count == LANES {
@@ -163,7 +163,7 @@ impl<'a> Tile<'a> {
         let count = std::mem::take(&mut self.queue.count);
         let Merge { depth_test, depth_write, blend } =
             if PLAIN { Merge::default() } else { frame.state.merge };
-        let numbers = f32x8::transpose(self.queue.records);
+        let numbers = f32x8::transpose(self.queue.packed);
         let linear = linear(|k| numbers.get(k).copied().unwrap_or(f32x8::ZERO));
         let interpolation = if PLAIN { Interpolation::PerspectiveCorrect } else { frame.state.interpolation };
         let point: Projected<Lanes, N> = linear.multiplied(interpolation);
@@ -224,17 +224,17 @@ fn draw_rows<const PLAIN: bool, S: Shader<N>, const N: usize>(
     let (bottom_left, stride, to_next_band) =
         (band.place((area.left, area.bottom)), band.stride, band.to_next_band);
     let (colors, depths) = (&mut *band.colors, &mut *band.depths);
-    let ways = Ways::<N>::of(triangle);
-    let step = ways.change(setup.weight_step()).spread();
+    let varyings = PackedTriangleVaryings::<N>::of(triangle);
+    let step = varyings.change(setup.weight_step()).spread();
     let gradients = S::USES_DERIVATIVES.then(|| {
         let gradients = gradients_between(triangle.vertices());
-        gradients.map(|weights| ways.change(weights).spread())
+        gradients.map(|weights| varyings.change(weights).spread())
     });
     let last = colors.len() - LANES;
     let mut thrown_away = 0;
     for row in 0..area.rows().len() {
         let (first, covered, weights) = spans.row(row, &area.columns());
-        let start = ways.at(weights).spread();
+        let start = varyings.at(weights).spread();
         let mut right = Lanes::splat((covered.start - first) as f32) + Lanes::new(STEPS);
         let mut place = bottom_left + row * stride + (covered.start - area.left) as usize;
         let mut count = covered.end - covered.start;

@@ -28,7 +28,7 @@ pub(super) struct Vertices {
     /// Which planes a vertex lies outside of, a bit each; and the bit below.
     outside: Vec<u8>,
     /// 1/ω, depth, V/ω: as many blocks of eight numbers for a vertex as it takes.
-    records: Vec<f32x8>,
+    packed: Vec<f32x8>,
 }
 
 /// The vertex is not finite, beyond the guard band or too far away on the screen: triangles of it cannot be drawn as they
@@ -39,7 +39,7 @@ pub(super) const AMISS: u8 = 1 << 7;
 #[derive(Clone, Copy)]
 pub(super) struct Triangle<'a> {
     pub(super) places: [SnappedPosition; 3],
-    pub(super) records: [&'a [f32x8]; 3],
+    pub(super) packed: [&'a [f32x8]; 3],
 }
 
 impl Triangle<'_> {
@@ -52,7 +52,7 @@ impl Triangle<'_> {
 /// So many vertices are divided and snapped at a time.
 const AT_A_TIME: usize = 4;
 
-/// How many blocks of eight numbers a record with so many varyings has.
+/// How many blocks of eight numbers so many varyings take.
 const fn blocks_of(varyings: usize) -> usize {
     (2 + varyings).div_ceil(LANES)
 }
@@ -62,7 +62,7 @@ impl Vertices {
     pub(super) fn clear(&mut self) {
         self.places.clear();
         self.outside.clear();
-        self.records.clear();
+        self.packed.clear();
     }
 
     // ANCHOR: shade_vertices
@@ -79,25 +79,21 @@ impl Vertices {
         let blocks = blocks_of(N);
         self.places.resize(count, [0; 2]);
         self.outside.resize(count, 0);
-        self.records.resize(count * blocks, f32x8::ZERO);
-        self.each_part(blocks, &|first, Slots { places, outside, records }| {
+        self.packed.resize(count * blocks, f32x8::ZERO);
+        self.each_part(blocks, &|first, Slots { places, outside, packed }| {
             // Computed again: so it is a constant in here, and not a captured number.
             let blocks = blocks_of(N);
             let slots = places.as_chunks_mut().0.iter_mut().zip(outside.as_chunks_mut().0);
-            let slots = slots.zip(records.chunks_exact_mut(AT_A_TIME * blocks));
-            for (four, ((places, outside), records)) in slots.enumerate() {
+            let slots = slots.zip(packed.chunks_exact_mut(AT_A_TIME * blocks));
+            for (four, ((places, outside), packed)) in slots.enumerate() {
                 let number = |i: usize| (first + four * AT_A_TIME + i).min(vertices.len() - 1);
                 let clip: [ClipVertex<N>; AT_A_TIME] = from_fn(|i| shader.vertex(&vertices[number(i)]));
                 let ndc;
                 (*places, *outside, ndc) = projection.project(&clip);
-                let records = records.chunks_exact_mut(blocks);
-                for ((vertex, position), record) in clip.iter().zip(ndc).zip(records) {
+                let packed = packed.chunks_exact_mut(blocks);
+                for ((vertex, position), packed) in clip.iter().zip(ndc).zip(packed) {
                     let ClipVertex { position: DVec4 { w, .. }, varyings } = *vertex;
-                    write_record(
-                        &NdcVertex { position, w, varyings },
-                        projection.state.interpolation,
-                        record,
-                    );
+                    pack(&NdcVertex { position, w, varyings }, projection.state.interpolation, packed);
                 }
             }
         });
@@ -111,9 +107,9 @@ impl Vertices {
         const PART: usize = 256 * AT_A_TIME;
         let places = self.places.par_chunks_mut(PART);
         let parts = places.zip(self.outside.par_chunks_mut(PART));
-        let parts = parts.zip(self.records.par_chunks_mut(PART * blocks)).enumerate();
-        parts.for_each(|(i, ((places, outside), records))| {
-            shade(i * PART, Slots { places, outside, records });
+        let parts = parts.zip(self.packed.par_chunks_mut(PART * blocks)).enumerate();
+        parts.for_each(|(i, ((places, outside), packed))| {
+            shade(i * PART, Slots { places, outside, packed });
         });
     }
 
@@ -125,11 +121,11 @@ impl Vertices {
     ) -> Option<[SnappedPosition; 3]> {
         let [a, b, c] = corners.each_ref().map(|vertex| projection.place_of(vertex));
         let places = [a?, b?, c?];
-        let first = self.records.len();
+        let first = self.packed.len();
         self.places.extend(places);
-        self.records.resize(first + 3 * blocks_of(N), f32x8::ZERO);
-        for (vertex, record) in corners.iter().zip(self.records[first..].chunks_exact_mut(blocks_of(N))) {
-            write_record(vertex, projection.state.interpolation, record);
+        self.packed.resize(first + 3 * blocks_of(N), f32x8::ZERO);
+        for (vertex, packed) in corners.iter().zip(self.packed[first..].chunks_exact_mut(blocks_of(N))) {
+            pack(vertex, projection.state.interpolation, packed);
         }
         Some(places)
     }
@@ -160,7 +156,7 @@ impl Vertices {
         let blocks = blocks_of(N);
         Triangle {
             places: self.places(corners),
-            records: corners.map(|corner| &self.records[corner * blocks..(corner + 1) * blocks]),
+            packed: corners.map(|corner| &self.packed[corner * blocks..(corner + 1) * blocks]),
         }
     }
 }
@@ -169,13 +165,13 @@ impl Vertices {
 struct Slots<'a> {
     places: &'a mut [SnappedPosition],
     outside: &'a mut [u8],
-    records: &'a mut [f32x8],
+    packed: &'a mut [f32x8],
 }
 
-fn write_record<const N: usize>(vertex: &NdcVertex<N>, interpolation: Interpolation, record: &mut [f32x8]) {
+fn pack<const N: usize>(vertex: &NdcVertex<N>, interpolation: Interpolation, packed: &mut [f32x8]) {
     let corner = LinearVaryings::<f32, N>::new(vertex, interpolation);
     let mut numbers = [corner.distance, corner.depth].into_iter().chain(corner.values);
-    for block in record {
+    for block in packed {
         *block = f32x8::new(from_fn(|_| numbers.next().unwrap_or(0.0)));
     }
 }
