@@ -33,7 +33,7 @@ fn cross<T: Copy + std::ops::Mul<Output = T> + std::ops::Sub<Output = T>>(a: [T;
 /// All numbers are whole, or halves, and have at most 53 bits: exact in `f64`. E and d are whole, so that a quotient with
 /// the half in it is never nearer to a whole number than 1/2d. So it may be a product with 1/d, which is rounded: for all
 /// columns that a picture has the error is smaller.
-pub(super) struct Setup {
+pub(super) struct TriangleSetup {
     /// The edge functions at the center of the pixel (0, 0), and how they change to the right and upwards.
     origin: f64x4,
     right: f64x4,
@@ -48,7 +48,7 @@ pub(super) struct Setup {
     pub(super) one_over_area: f32,
 }
 
-impl Setup {
+impl TriangleSetup {
     pub(super) fn new(places: [SnappedPosition; 3]) -> Self {
         // Without change to the right a row is covered, or it is not: a bound far to the right of all, or to the left.
         const FAR: f64 = 1e6;
@@ -107,7 +107,7 @@ impl Spans {
     pub(super) const NONE: Self = Self { first: [0; ROWS], end: [0; ROWS], weights: [[0.0; ROWS]; 2] };
 
     /// Finds them in some rows, of which there are no more than a tile has, in a picture of so many columns.
-    pub(super) fn find(&mut self, setup: &Setup, rows: Range<i32>, columns: i32) {
+    pub(super) fn find(&mut self, setup: &TriangleSetup, rows: Range<i32>, columns: i32) {
         let number = f64x4::new([0.0, 1.0, 2.0, 3.0]) + f64x4::splat(f64::from(rows.start));
         let of_edge = |numbers: &f64x4, i: usize| f64x4::splat(numbers.as_array_ref()[i]);
         let [mut above, mut values] = [(&setup.above, &setup.above_up), (&setup.origin, &setup.up)]
@@ -159,27 +159,27 @@ fn whole_below(numbers: f64x4, list: &mut [i32]) -> f64x4 {
 
 // ANCHOR: small
 /// How wide and high a small triangle is at most: then its coverage fits into 64 bits.
-pub(super) const SMALL: usize = 8;
+pub(super) const SMALL_SIDE: usize = 8;
 
 /// The three edges of a small triangle.
 ///
 /// Edge functions and their steps are whole, and less than 2²⁴ in 8 × 8 pixels of which the first lies in the triangle's
 /// box, though rows of the box may be missing below: 2302 · (2047 + 3839) at most. So they are exact in `f32`.
-pub(super) struct Small {
+pub(super) struct SmallTriangleSetup {
     /// The edge functions at the first center.
     start: [f32; 3],
     /// How they change from pixel to pixel, to the right and upwards.
     right: [f32; 3],
     up: [f32; 3],
     /// What keeps a tie out: 1 on edges that are neither top nor left.
-    shy: [f32; 3],
+    fill_rule_bias: [f32; 3],
     one_over_area: f32,
 }
 
 /// Steps from the first of eight pixels, as factors.
 pub(super) const STEPS: [f32; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 
-impl Small {
+impl SmallTriangleSetup {
     /// The edges, seen from the center of a pixel. Inlined, so that the places stay in registers.
     #[inline(always)]
     pub(super) fn new(places: [SnappedPosition; 3], (x, y): Pixel) -> Self {
@@ -196,7 +196,7 @@ impl Small {
             start: start.map(|value| (value * sign) as f32),
             right: right.map(|step| (step * PIXEL) as f32),
             up: up.map(|step| (step * PIXEL) as f32),
-            shy: from_fn(|i| f32::from(u8::from(!is_top_left(right[i], up[i])))),
+            fill_rule_bias: from_fn(|i| f32::from(u8::from(!is_top_left(right[i], up[i])))),
             one_over_area: 1.0 / (area.abs() as f32),
         }
     }
@@ -213,13 +213,14 @@ impl Small {
         let columns = (1_u64 << area.columns().len()) - 1;
         // A zero is positive here: the first summand is never −0, and then no sum is.
         let mut values: [Lanes; 3] = from_fn(|i| {
-            Lanes::splat(self.start[i] - self.shy[i]) + Lanes::splat(self.right[i]) * Lanes::new(STEPS)
+            Lanes::splat(self.start[i] - self.fill_rule_bias[i])
+                + Lanes::splat(self.right[i]) * Lanes::new(STEPS)
         });
         let mut covered = 0;
         for y in 0..area.rows().len() {
             // None of the three values says, by its sign, that the pixel is outside.
             let outside = (values[0] | values[1] | values[2]).move_mask() as u8;
-            covered |= (u64::from(!outside) & columns) << (SMALL * y);
+            covered |= (u64::from(!outside) & columns) << (SMALL_SIDE * y);
             values = from_fn(|i| values[i] + Lanes::splat(self.up[i]));
         }
         covered
@@ -228,7 +229,7 @@ impl Small {
     /// The first covered column of each row, and how much the second and the third vertex weigh there. In rows without any
     /// what is answered means nothing.
     #[inline(always)]
-    pub(super) fn starts(&self, covered: u64) -> ([i32; SMALL], [[f32; SMALL]; 2]) {
+    pub(super) fn starts(&self, covered: u64) -> ([i32; SMALL_SIDE], [[f32; SMALL_SIDE]; 2]) {
         let rows = i16x8::from_u8x16_low(cast([covered.to_le(), 0]));
         // The exponent of a power of two is the number of its bit.
         let lowest: Lanes = i32x8::from_i16x8(rows & -rows).round_float();
@@ -283,7 +284,7 @@ mod tests {
             let bottom = area.bottom + which.index(area.rows().len()) as i32;
             let rows = bottom..area.top.min(bottom + TILE_HEIGHT);
 
-            let setup = Setup::new(places);
+            let setup = TriangleSetup::new(places);
             let mut spans = Spans::NONE;
             spans.find(&setup, rows.clone(), COLUMNS);
             let bits = |weights: [f32; 2]| weights.map(f32::to_bits);
@@ -311,11 +312,11 @@ mod tests {
             let places = places.map(|place| place.map(|along| (origin * 256 + along) / grid * grid));
             let Some(coverage) = Coverage::of(places.map(|place| place.map(i64::from))) else { return Ok(()) };
             let whole = box_of(places);
-            prop_assume!(is_at_most(whole, SMALL as i32));
+            prop_assume!(is_at_most(whole, SMALL_SIDE as i32));
             // Rows may be missing below, which belong to another tile.
             let window = Rect { bottom: i32::max(whole.bottom + below, 0), ..Rect::sized(2000, 2000) };
             let Some(area) = shared(whole, window) else { return Ok(()) };
-            let small = Small::new(places, (area.left, area.bottom));
+            let small = SmallTriangleSetup::new(places, (area.left, area.bottom));
             let bits_of = |weights: [f32; 2]| weights.map(f32::to_bits);
             prop_assert_eq!(bits_of(small.weight_step()), bits_of(coverage.weight_step()));
             let covered = small.covered(area);

@@ -1,6 +1,6 @@
 //! What is hidden in all of a tile need not be drawn there.
 
-use super::edges::SMALL;
+use super::edges::SMALL_SIDE;
 use super::frame::Frame;
 use super::snapped::{box_of, is_at_most, shared};
 use super::vertices::Triangle;
@@ -39,7 +39,7 @@ pub(super) fn hidden_behind<S: Shader<N>, const N: usize>(
     frame.front.each_triangle_in(frame.source, number, |triangle| {
         let whole = box_of(triangle.places);
         // What goes through the queue is not noted if the shader throws it away.
-        let is_large = !is_at_most(whole, SMALL as i32);
+        let is_large = !is_at_most(whole, SMALL_SIDE as i32);
         if is_large
             && shared(whole, tile) == Some(tile)
             && let Some(coverage) = coverage_of(triangle)

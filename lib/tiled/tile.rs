@@ -6,7 +6,7 @@ use prefetch_index::prefetch_index;
 use wide::{f32x8, i32x8};
 
 use super::bands::{Band, TILE_HEIGHT};
-use super::edges::{SMALL, STEPS, Setup, Small, Spans};
+use super::edges::{SMALL_SIDE, STEPS, SmallTriangleSetup, Spans, TriangleSetup};
 use super::frame::Frame;
 use super::lanes::{ALL, LANES, LaneMask, Lanes, is_greater, is_less_or_equal, packed};
 use super::occlusion::{NOTHING_IS_HIDDEN, coverage_of, depth_range, hidden_behind};
@@ -91,7 +91,7 @@ impl<'a> Tile<'a> {
         let whole = box_of(triangle.places);
         let Some(area) = shared(whole, self.rect) else { return };
         // Values are stepped from the first pixel of a row. It must be in this tile.
-        let is_small = is_at_most(whole, SMALL as i32) && whole.left >= self.rect.left;
+        let is_small = is_at_most(whole, SMALL_SIDE as i32) && whole.left >= self.rect.left;
         // What takes more than one block does not fit into the queue, nor do the gradients of a triangle.
         if is_small && 2 + N <= LANES && !S::USES_DERIVATIVES {
             self.draw_small(frame, triangle, area);
@@ -112,7 +112,7 @@ impl<'a> Tile<'a> {
         triangle: Triangle<'_>,
         area: Rect,
     ) {
-        let setup = Small::new(triangle.places, (area.left, area.bottom));
+        let setup = SmallTriangleSetup::new(triangle.places, (area.left, area.bottom));
         let varyings = PackedTriangleVaryings::<N>::of(triangle);
         let step = varyings.change(setup.weight_step()).first;
         let mut covered = setup.covered(area);
@@ -121,10 +121,10 @@ impl<'a> Tile<'a> {
         while covered != 0 {
             let bit = covered.trailing_zeros() as usize;
             covered &= covered - 1;
-            let (row, column) = (bit / SMALL, bit % SMALL);
+            let (row, column) = (bit / SMALL_SIDE, bit % SMALL_SIDE);
             let start = varyings.at([weights[0][row], weights[1][row]]).first;
             // The remainder only tells that it is a place in the list.
-            let packed = start + step * f32x8::splat(STEPS[(column - firsts[row] as usize) % SMALL]);
+            let packed = start + step * f32x8::splat(STEPS[(column - firsts[row] as usize) % SMALL_SIDE]);
             self.enqueue(frame, packed, corner + row * width + column);
         }
     }
@@ -199,7 +199,7 @@ impl<'a> Tile<'a> {
         area: Rect,
     ) {
         self.flush(frame);
-        let setup = Setup::new(triangle.places);
+        let setup = TriangleSetup::new(triangle.places);
         self.spans.find(&setup, area.rows(), frame.columns);
         if frame.is_plain {
             draw_rows::<true, S, N>(frame, triangle, &setup, &self.spans, area, &mut self.band);
@@ -216,7 +216,7 @@ impl<'a> Tile<'a> {
 fn draw_rows<const PLAIN: bool, S: Shader<N>, const N: usize>(
     frame: &Frame<'_, S, N>,
     triangle: Triangle<'_>,
-    setup: &Setup,
+    setup: &TriangleSetup,
     spans: &Spans,
     area: Rect,
     band: &mut Band<'_>,

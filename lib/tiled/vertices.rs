@@ -149,7 +149,7 @@ impl Vertices {
 
     /// A triangle of vertices with so many varyings.
     ///
-    /// Inlined, as [`Small::new`](super::edges::Small::new) is: places that are written to memory here would be read there
+    /// Inlined, as [`SmallTriangleSetup::new`](super::edges::SmallTriangleSetup::new) is: places that are written to memory here would be read there
     /// in wider pieces, for which the processor waits.
     #[inline(always)]
     pub(super) fn triangle<const N: usize>(&self, corners: [usize; 3]) -> Triangle<'_> {
