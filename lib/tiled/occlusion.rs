@@ -9,7 +9,7 @@ use crate::rect::Rect;
 use crate::shader::Shader;
 
 /// No depth is behind this one.
-pub(super) const NOTHING_IS_HIDDEN: f64 = f64::INFINITY;
+pub(super) const NO_OCCLUDER: f64 = f64::INFINITY;
 
 // ANCHOR: occlusion
 /// The depth behind which nothing can be seen in a tile: that of the nearest large triangle that covers all of it, where
@@ -17,8 +17,8 @@ pub(super) const NOTHING_IS_HIDDEN: f64 = f64::INFINITY;
 ///
 /// ```text
 ///   depth
-///     ▲  ──────────────── A       nowhere nearer than `behind`: hidden, whether it comes first or last
-///     │ ─ ─ ─ ─ ─ ─ ─ ─ ╱ ─ behind
+///     ▲  ──────────────── A       nowhere nearer than that: hidden, whether first or last
+///     │ ─ ─ ─ ─ ─ ─ ─ ─ ╱ ─ the occluder depth
 ///     │            ╱
 ///     │      ╱                    B covers the tile
 ///     │ ╱
@@ -27,14 +27,14 @@ pub(super) const NOTHING_IS_HIDDEN: f64 = f64::INFINITY;
 /// ```
 ///
 /// Only with the default options, under which the nearest fragment stays.
-pub(super) fn hidden_behind<S: Shader<N>, const N: usize>(
+pub(super) fn occluder_depth<S: Shader<N>, const N: usize>(
     frame: &Frame<'_, S, N>,
     number: usize,
     tile: Rect,
 ) -> f64 {
-    let mut behind = NOTHING_IS_HIDDEN;
+    let mut nearest = NO_OCCLUDER;
     if !frame.is_plain {
-        return behind;
+        return nearest;
     }
     frame.front.each_triangle_in(frame.source, number, |triangle| {
         let whole = box_of(triangle.places);
@@ -45,10 +45,10 @@ pub(super) fn hidden_behind<S: Shader<N>, const N: usize>(
             && let Some(coverage) = coverage_of(triangle)
             && corners(tile).into_iter().all(|corner| coverage.covers(coverage.edge_values(corner)))
         {
-            behind = behind.min(depth_range(&coverage, triangle, tile)[1]);
+            nearest = nearest.min(depth_range(&coverage, triangle, tile)[1]);
         }
     });
-    behind
+    nearest
 }
 
 /// The outermost centers of a rectangle: what changes linearly has its extremes there.

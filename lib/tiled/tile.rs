@@ -9,7 +9,7 @@ use super::bands::{Band, TILE_HEIGHT};
 use super::edges::{SMALL_SIDE, STEPS, SmallTriangleSetup, Spans, TriangleSetup};
 use super::frame::Frame;
 use super::lanes::{ALL, LANES, LaneMask, Lanes, is_greater, is_less_or_equal, packed};
-use super::occlusion::{NOTHING_IS_HIDDEN, coverage_of, depth_range, hidden_behind};
+use super::occlusion::{NO_OCCLUDER, coverage_of, depth_range, occluder_depth};
 use super::packed::{PackedTriangleVaryings, linear};
 use super::snapped::{box_of, is_at_most, shared};
 use super::vertices::Triangle;
@@ -29,7 +29,7 @@ pub(super) struct Tile<'a> {
     /// What of the tile lies in the picture.
     rect: Rect,
     /// Nothing that is deeper than this can be seen.
-    behind: f64,
+    occluder_depth: f64,
     queue: Queue,
     /// What a larger one covers.
     spans: Spans,
@@ -50,7 +50,7 @@ impl<'a> Tile<'a> {
         Self {
             band,
             rect: Rect::sized(0, 0),
-            behind: NOTHING_IS_HIDDEN,
+            occluder_depth: NO_OCCLUDER,
             queue: Queue { count: 0, packed: [f32x8::ZERO; LANES], places: [0; LANES] },
             spans: Spans::NONE,
         }
@@ -65,12 +65,12 @@ impl<'a> Tile<'a> {
     ) {
         self.rect = rect;
         let may_hide = frame.front.has_large_triangles() && !frame.discards.load(Ordering::Relaxed);
-        self.behind = if may_hide { hidden_behind(frame, number, rect) } else { NOTHING_IS_HIDDEN };
+        self.occluder_depth = if may_hide { occluder_depth(frame, number, rect) } else { NO_OCCLUDER };
         self.draw_all(frame, number);
-        if self.behind < NOTHING_IS_HIDDEN && frame.discards.load(Ordering::Relaxed) {
+        if self.occluder_depth < NO_OCCLUDER && frame.discards.load(Ordering::Relaxed) {
             // What seemed to cover the tile may have holes: once more, with all triangles. Where the nearest stays, and of
             // equally near ones the last, drawing twice is drawing once.
-            self.behind = NOTHING_IS_HIDDEN;
+            self.occluder_depth = NO_OCCLUDER;
             self.draw_all(frame, number);
         }
     }
@@ -96,8 +96,8 @@ impl<'a> Tile<'a> {
         if is_small && 2 + N <= LANES && !S::USES_DERIVATIVES {
             self.draw_small(frame, triangle, area);
         } else {
-            let may_be_hidden = self.behind < NOTHING_IS_HIDDEN && !is_at_most(whole, TILE_HEIGHT);
-            let is_hidden = |coverage| depth_range(&coverage, triangle, area)[0] > self.behind;
+            let may_be_hidden = self.occluder_depth < NO_OCCLUDER && !is_at_most(whole, TILE_HEIGHT);
+            let is_hidden = |coverage| depth_range(&coverage, triangle, area)[0] > self.occluder_depth;
             if !(may_be_hidden && coverage_of(triangle).is_some_and(is_hidden)) {
                 self.draw_spans(frame, triangle, area);
             }
