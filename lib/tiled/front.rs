@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::bands::{TILE_HEIGHT, TILE_WIDTH, tiles_of};
 use super::snapped::{SnappedPosition, box_of, shared, signed_area};
-use super::vertices::{AMISS, Projection, Triangle, Vertices};
+use super::vertices::{NOT_REPRESENTABLE, Projection, Triangle, Vertices};
 use crate::area::Winding;
 use crate::clip::{NdcVertex, clip_triangle, fan};
 use crate::exact::{cut_to_guard_band, is_in_guard_band};
@@ -174,7 +174,7 @@ fn assemble<S: Shader<N>, const N: usize>(
     let corners = mesh.triangle(number);
     let outside = vertices.outside(corners);
     let (any, all) = (outside[0] | outside[1] | outside[2], outside[0] & outside[1] & outside[2]);
-    let beyond_a_plane = all & !AMISS != 0;
+    let beyond_a_plane = all & !NOT_REPRESENTABLE != 0;
     if any == 0 {
         chunk.add(number as u32, vertices.places(corners), context);
     } else if !beyond_a_plane {

@@ -33,7 +33,7 @@ pub(super) struct Vertices {
 
 /// The vertex is not finite, beyond the guard band or too far away on the screen: triangles of it cannot be drawn as they
 /// are.
-pub(super) const AMISS: u8 = 1 << 7;
+pub(super) const NOT_REPRESENTABLE: u8 = 1 << 7;
 
 /// A triangle as a tile needs it.
 #[derive(Clone, Copy)]
@@ -246,7 +246,7 @@ impl<'a> Projection<'a> {
         let is_placed = pixels.map(|along| is_within(along, FARTHEST));
         let answers = is_finite.into_iter().chain(is_near).chain(is_placed);
         let is_ready = answers.fold(w.cmp_gt(f64x4::ZERO), |all, answer| all & answer);
-        let outside = self.outside(clip) | unless(is_ready, AMISS.into());
+        let outside = self.outside(clip) | unless(is_ready, NOT_REPRESENTABLE.into());
 
         let [x, y] = pixels.map(|along| whole(rounded(along * f64x4::splat(SUBPIXELS as f64))));
         let ndc = ndc.map(f64x4::to_array);
@@ -325,7 +325,7 @@ mod tests {
                 let one = NdcVertex::<0>::from(vertices[i]);
                 let is_ready = positions[i].is_finite() && is_in_guard_band(&one);
                 let place = projection.place_of(&one).filter(|_| is_ready);
-                prop_assert_eq!(outside[i] & AMISS != 0, place.is_none());
+                prop_assert_eq!(outside[i] & NOT_REPRESENTABLE != 0, place.is_none());
                 if let Some(place) = place {
                     prop_assert_eq!(places[i], place);
                     prop_assert_eq!(ndc[i], one.position);
@@ -339,7 +339,7 @@ mod tests {
                     let is_inside = plane.signed_distance(asked) >= 0.0;
                     bits | u8::from(!is_inside) << number
                 });
-                prop_assert_eq!(outside[i] & !AMISS, expected);
+                prop_assert_eq!(outside[i] & !NOT_REPRESENTABLE, expected);
             }
         }
     }
