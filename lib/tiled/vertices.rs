@@ -180,19 +180,19 @@ fn pack<const N: usize>(vertex: &NdcVertex<N>, interpolation: Interpolation, pac
 pub(super) struct Projection<'a> {
     pub(super) state: &'a RenderState,
     pub(super) planes: ArrayVec<Plane, 6>,
-    sides: ArrayVec<Side, 6>,
+    wide_planes: ArrayVec<WidePlane, 6>,
     viewport: Viewport,
 }
 
 /// A plane, each number for four vertices.
-struct Side {
+struct WidePlane {
     normal: [f64x4; 4],
     offset: f64x4,
     /// Its bit.
     bit: i64,
 }
 
-impl Side {
+impl WidePlane {
     fn new((number, plane): (usize, &Plane)) -> Self {
         let (normal, offset) = plane.coefficients();
         Self { normal: normal.map(f64x4::splat), offset: f64x4::splat(offset), bit: 1 << number }
@@ -205,8 +205,8 @@ type FourVertices = ([SnappedPosition; AT_A_TIME], [u8; AT_A_TIME], [DVec3; AT_A
 impl<'a> Projection<'a> {
     pub(super) fn new(state: &'a RenderState, window: Rect) -> Self {
         let planes = state.clip_volume.planes(state.depth_range);
-        let sides = planes.iter().enumerate().map(Side::new).collect();
-        Self { state, planes, sides, viewport: state.viewport_in(window) }
+        let wide_planes = planes.iter().enumerate().map(WidePlane::new).collect();
+        Self { state, planes, wide_planes, viewport: state.viewport_in(window) }
     }
 
     /// Where on the screen a vertex is, if it is near enough.
@@ -222,7 +222,7 @@ impl<'a> Projection<'a> {
             ClipTest::BeforeDivide => clip,
             ClipTest::AfterDivide => clip.map(|component| component / clip[3]),
         };
-        self.sides.iter().fold(i64x4::ZERO, |outside, Side { normal, offset, bit }| {
+        self.wide_planes.iter().fold(i64x4::ZERO, |outside, WidePlane { normal, offset, bit }| {
             let [x, y, z, w]: [f64x4; 4] = from_fn(|axis| normal[axis] * asked[axis]);
             let distance = x + y + z + w + *offset;
             outside | unless(distance.cmp_ge(f64x4::ZERO), *bit)
