@@ -62,9 +62,9 @@ impl Background {
             fill(band.colors, self.color);
             fill(band.depths, self.depth);
         } else {
-            for place in band.places(rect) {
-                band.colors[place.clone()].fill(self.color);
-                band.depths[place].fill(self.depth);
+            for range in band.ranges(rect) {
+                band.colors[range.clone()].fill(self.color);
+                band.depths[range].fill(self.depth);
             }
         }
     }

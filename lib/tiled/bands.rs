@@ -76,13 +76,13 @@ impl Band<'_> {
     }
 
     /// Where in the band a pixel stands.
-    pub(super) fn place(&self, (x, y): Pixel) -> usize {
+    pub(super) fn index(&self, (x, y): Pixel) -> usize {
         (y - self.rect.bottom) as usize * self.stride + (x - self.rect.left) as usize
     }
 
     /// Where the rows of a rectangle stand.
-    pub(super) fn places(&self, rect: Rect) -> impl Iterator<Item = Range<usize>> + Clone + use<> {
-        let (first, stride) = (self.place((rect.left, rect.bottom)), self.stride);
+    pub(super) fn ranges(&self, rect: Rect) -> impl Iterator<Item = Range<usize>> + Clone + use<> {
+        let (first, stride) = (self.index((rect.left, rect.bottom)), self.stride);
         (0..rect.rows().len()).map(move |row| {
             let start = first + row * stride;
             start..start + rect.columns().len()

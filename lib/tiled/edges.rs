@@ -14,7 +14,7 @@ use crate::rect::{Pixel, Rect};
 
 const PIXEL: i32 = SUBPIXELS as i32;
 
-/// The cross product of two places, seen from the origin: the edge function there of the edge between them.
+/// The cross product of two positions, seen from the origin: the edge function there of the edge between them.
 #[inline(always)]
 fn cross<T: Copy + std::ops::Mul<Output = T> + std::ops::Sub<Output = T>>(a: [T; 2], b: [T; 2]) -> T {
     a[0] * b[1] - a[1] * b[0]
@@ -49,12 +49,12 @@ pub(super) struct TriangleSetup {
 }
 
 impl TriangleSetup {
-    pub(super) fn new(places: [SnappedPosition; 3]) -> Self {
+    pub(super) fn new(positions: [SnappedPosition; 3]) -> Self {
         // Without change to the right a row is covered, or it is not: a bound far to the right of all, or to the left.
         const FAR: f64 = 1e6;
         let (zero, half, one, infinity) = (f64x4::ZERO, f64x4::HALF, f64x4::ONE, f64x4::splat(f64::INFINITY));
         // From the corners b, c, a to c, a, b.
-        let [a, b, c] = places.map(|place| place.map(|along| f64::from(along - PIXEL / 2)));
+        let [a, b, c] = positions.map(|position| position.map(|along| f64::from(along - PIXEL / 2)));
         let [from, to] = [[b, c, a], [c, a, b]]
             .map(|[i, j, k]| [0, 1].map(|axis| f64x4::new([i[axis], j[axis], k[axis], 0.0])));
         let origin = cross(from, to);
@@ -150,8 +150,8 @@ impl Spans {
 fn whole_below(numbers: f64x4, list: &mut [i32]) -> f64x4 {
     // To the nearest of what is half less. The last bits of the sum are the whole number.
     let sum = (numbers - f64x4::HALF) + f64x4::splat(NO_FRACTIONS);
-    for (place, sum) in list.iter_mut().zip(sum.to_array()) {
-        *place = sum.to_bits() as i32;
+    for (whole, sum) in list.iter_mut().zip(sum.to_array()) {
+        *whole = sum.to_bits() as i32;
     }
     sum - f64x4::splat(NO_FRACTIONS)
 }
@@ -180,11 +180,11 @@ pub(super) struct SmallTriangleSetup {
 pub(super) const STEPS: [f32; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 
 impl SmallTriangleSetup {
-    /// The edges, seen from the center of a pixel. Inlined, so that the places stay in registers.
+    /// The edges, seen from the center of a pixel. Inlined, so that the positions stay in registers.
     #[inline(always)]
-    pub(super) fn new(places: [SnappedPosition; 3], (x, y): Pixel) -> Self {
-        let [a, b, c] =
-            places.map(|place| [place[0] - (x * PIXEL + PIXEL / 2), place[1] - (y * PIXEL + PIXEL / 2)]);
+    pub(super) fn new(positions: [SnappedPosition; 3], (x, y): Pixel) -> Self {
+        let [a, b, c] = positions
+            .map(|position| [position[0] - (x * PIXEL + PIXEL / 2), position[1] - (y * PIXEL + PIXEL / 2)]);
         // The three of them make up the area.
         let start = [cross(b, c), cross(c, a), cross(a, b)];
         let area = start[0] + start[1] + start[2];
@@ -263,12 +263,13 @@ mod tests {
         (corners, size, grid, origin, any::<bool>()).prop_map(
             |(corners, size, grid, [left, bottom], is_thin)| {
                 let most = |along: i32| along.clamp(-1 << 24, 1 << 24) / grid * grid;
-                let place = |share: f64, origin: i32| most(origin * 8 + (share * size * 256.0) as i32);
-                let mut places = corners.map(|(x, y)| [place(x, left), place(y, bottom)]);
+                let coordinate = |share: f64, origin: i32| most(origin * 8 + (share * size * 256.0) as i32);
+                let mut positions = corners.map(|(x, y)| [coordinate(x, left), coordinate(y, bottom)]);
                 if is_thin {
-                    places[2] = [0, 1].map(|axis| (places[0][axis] + places[1][axis]) / 2 + axis as i32);
+                    positions[2] =
+                        [0, 1].map(|axis| (positions[0][axis] + positions[1][axis]) / 2 + axis as i32);
                 }
-                places
+                positions
             },
         )
     }
@@ -277,14 +278,14 @@ mod tests {
         #![proptest_config(ProptestConfig { cases: 2000, ..ProptestConfig::default() })]
 
         #[test]
-        fn spans_are_exact(places in triangle(), which in any::<prop::sample::Index>()) {
-            let Some(coverage) = Coverage::of(places.map(|place| place.map(i64::from))) else { return Ok(()) };
+        fn spans_are_exact(positions in triangle(), which in any::<prop::sample::Index>()) {
+            let Some(coverage) = Coverage::of(positions.map(|position| position.map(i64::from))) else { return Ok(()) };
             let window = Rect { left: 0, bottom: 0, right: COLUMNS, top: 100_000 };
-            let Some(area) = shared(box_of(places), window) else { return Ok(()) };
+            let Some(area) = shared(box_of(positions), window) else { return Ok(()) };
             let bottom = area.bottom + which.index(area.rows().len()) as i32;
             let rows = bottom..area.top.min(bottom + TILE_HEIGHT);
 
-            let setup = TriangleSetup::new(places);
+            let setup = TriangleSetup::new(positions);
             let mut spans = Spans::NONE;
             spans.find(&setup, rows.clone(), COLUMNS);
             let bits = |weights: [f32; 2]| weights.map(f32::to_bits);
@@ -304,19 +305,19 @@ mod tests {
 
         #[test]
         fn small_triangles_are_exact(
-            places in prop::array::uniform3([0..2304, 0..2304]),
+            positions in prop::array::uniform3([0..2304, 0..2304]),
             origin in -3..900,
             grid in prop_oneof![Just(1), Just(128)],
             below in 0..8_i32,
         ) {
-            let places = places.map(|place| place.map(|along| (origin * 256 + along) / grid * grid));
-            let Some(coverage) = Coverage::of(places.map(|place| place.map(i64::from))) else { return Ok(()) };
-            let whole = box_of(places);
+            let positions = positions.map(|position| position.map(|along| (origin * 256 + along) / grid * grid));
+            let Some(coverage) = Coverage::of(positions.map(|position| position.map(i64::from))) else { return Ok(()) };
+            let whole = box_of(positions);
             prop_assume!(is_at_most(whole, SMALL_SIDE as i32));
             // Rows may be missing below, which belong to another tile.
             let window = Rect { bottom: i32::max(whole.bottom + below, 0), ..Rect::sized(2000, 2000) };
             let Some(area) = shared(whole, window) else { return Ok(()) };
-            let small = SmallTriangleSetup::new(places, (area.left, area.bottom));
+            let small = SmallTriangleSetup::new(positions, (area.left, area.bottom));
             let bits_of = |weights: [f32; 2]| weights.map(f32::to_bits);
             prop_assert_eq!(bits_of(small.weight_step()), bits_of(coverage.weight_step()));
             let covered = small.covered(area);

@@ -176,7 +176,7 @@ fn assemble<S: Shader<N>, const N: usize>(
     let (any, all) = (outside[0] | outside[1] | outside[2], outside[0] & outside[1] & outside[2]);
     let beyond_a_plane = all & !NOT_REPRESENTABLE != 0;
     if any == 0 {
-        chunk.add(number as u32, vertices.places(corners), context);
+        chunk.add(number as u32, vertices.positions(corners), context);
     } else if !beyond_a_plane {
         let projection = &context.projection;
         // Clipping is rare, and needs the vertex as it was: shade it once more.
@@ -211,23 +211,25 @@ impl Chunk {
 
     fn add_vertices<const N: usize>(&mut self, piece: &[NdcVertex<N>; 3], context: &Context<'_>) {
         let number = self.extra.triangle_count() as u32;
-        if let Some(places) = self.extra.push(piece, &context.projection) {
-            self.add(EXTRA | number, places, context);
+        if let Some(positions) = self.extra.push(piece, &context.projection) {
+            self.add(EXTRA | number, positions, context);
         }
     }
 
     // ANCHOR: bin
     /// Puts a triangle into the bins of the tiles that its bounding box touches, if it is seen at all.
     ///
-    /// Inlined, so that the places stay in registers: what turns away costs little else.
+    /// Inlined, so that the positions stay in registers: what turns away costs little else.
     #[inline(always)]
-    fn add(&mut self, number: u32, places: [SnappedPosition; 3], context: &Context<'_>) {
-        let area = signed_area(places);
+    fn add(&mut self, number: u32, positions: [SnappedPosition; 3], context: &Context<'_>) {
+        let area = signed_area(positions);
         let is_culled = if area > 0 { context.culls_counterclockwise } else { context.culls_clockwise };
         if area == 0 || is_culled {
             return;
         }
-        let Some(Rect { left, bottom, right, top }) = shared(box_of(places), context.window) else { return };
+        let Some(Rect { left, bottom, right, top }) = shared(box_of(positions), context.window) else {
+            return;
+        };
         self.has_large |= right - left >= TILE_WIDTH && top - bottom >= TILE_HEIGHT;
         for row in bottom / TILE_HEIGHT..=(top - 1) / TILE_HEIGHT {
             for column in left / TILE_WIDTH..=(right - 1) / TILE_WIDTH {

@@ -56,8 +56,8 @@ impl LaneMask {
     /// The lanes whose bit is set, the first lane in the lowest bit.
     #[inline]
     pub(crate) fn of_bits(bits: i32) -> Self {
-        let place = i32x8::new([1, 2, 4, 8, 16, 32, 64, 128]);
-        Self(cast((i32x8::splat(bits) & place).cmp_eq(place)))
+        let bit = i32x8::new([1, 2, 4, 8, 16, 32, 64, 128]);
+        Self(cast((i32x8::splat(bits) & bit).cmp_eq(bit)))
     }
 
     /// `yes` in the lanes of the mask, `no` in the others.
@@ -150,16 +150,16 @@ impl Real for f32x8 {
 
     #[inline]
     fn look_up_color(column: Self, row: Self, row_bits: u32, colors: &[Color]) -> i32x8 {
-        let places = (row.fast_trunc_int() << row_bits) + column.fast_trunc_int();
+        let indices = (row.fast_trunc_int() << row_bits) + column.fast_trunc_int();
         // Two by two: half as many numbers leave the register, which keeps those parts of the processor busy that the
         // arithmetic needs.
-        let pairs: [u64; LANES / 2] = cast(places);
+        let pairs: [u64; LANES / 2] = cast(indices);
         let is_high = |lane: usize| (lane % 2 == 1) == cfg!(target_endian = "little");
-        let place = |lane: usize| {
+        let index = |lane: usize| {
             let pair = pairs[lane / 2];
             if is_high(lane) { pair >> 32 } else { pair & 0xFFFF_FFFF }
         };
-        i32x8::new(from_fn(|lane| colors[place(lane) as usize].bits() as i32))
+        i32x8::new(from_fn(|lane| colors[index(lane) as usize].bits() as i32))
     }
 
     #[inline]

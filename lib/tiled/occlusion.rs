@@ -37,7 +37,7 @@ pub(super) fn occluder_depth<S: Shader<N>, const N: usize>(
         return nearest;
     }
     frame.front.each_triangle_in(frame.source, number, |triangle| {
-        let whole = box_of(triangle.places);
+        let whole = box_of(triangle.positions);
         // What goes through the queue is not noted if the shader throws it away.
         let is_large = !is_at_most(whole, SMALL_SIDE as i32);
         if is_large

@@ -18,7 +18,7 @@ pub(super) fn signed_area([a, b, c]: [SnappedPosition; 3]) -> i64 {
 
 /// The pixels whose centers lie in the bounding box of a triangle, in the picture or not.
 ///
-/// As [`Coverage::bounding_box`](crate::exact::edge::Coverage::bounding_box), but in the 32 bits that places have here: it is
+/// As [`Coverage::bounding_box`](crate::exact::edge::Coverage::bounding_box), but in the 32 bits that positions have here: it is
 /// asked for every triangle, and once more in each of its tiles.
 #[inline(always)]
 pub(super) fn box_of([a, b, c]: [SnappedPosition; 3]) -> Rect {

@@ -40,8 +40,8 @@ struct Queue {
     count: usize,
     /// 1/ω, depth, V/ω of each fragment.
     packed: [f32x8; LANES],
-    /// Where in the band each fragment is.
-    places: [usize; LANES],
+    /// Where in the band each fragment is: an index.
+    indices: [usize; LANES],
 }
 
 impl<'a> Tile<'a> {
@@ -51,7 +51,7 @@ impl<'a> Tile<'a> {
             band,
             rect: Rect::sized(0, 0),
             occluder_depth: NO_OCCLUDER,
-            queue: Queue { count: 0, packed: [f32x8::ZERO; LANES], places: [0; LANES] },
+            queue: Queue { count: 0, packed: [f32x8::ZERO; LANES], indices: [0; LANES] },
             spans: Spans::NONE,
         }
     }
@@ -88,7 +88,7 @@ impl<'a> Tile<'a> {
         frame: &Frame<'_, S, N>,
         triangle: Triangle<'_>,
     ) {
-        let whole = box_of(triangle.places);
+        let whole = box_of(triangle.positions);
         let Some(area) = shared(whole, self.rect) else { return };
         // Values are stepped from the first pixel of a row. It must be in this tile.
         let is_small = is_at_most(whole, SMALL_SIDE as i32) && whole.left >= self.rect.left;
@@ -112,18 +112,18 @@ impl<'a> Tile<'a> {
         triangle: Triangle<'_>,
         area: Rect,
     ) {
-        let setup = SmallTriangleSetup::new(triangle.places, (area.left, area.bottom));
+        let setup = SmallTriangleSetup::new(triangle.positions, (area.left, area.bottom));
         let varyings = PackedTriangleVaryings::<N>::of(triangle);
         let step = varyings.change(setup.weight_step()).first;
         let mut covered = setup.covered(area);
         let (firsts, weights) = setup.starts(covered);
-        let (corner, width) = (self.band.place((area.left, area.bottom)), self.band.stride);
+        let (corner, width) = (self.band.index((area.left, area.bottom)), self.band.stride);
         while covered != 0 {
             let bit = covered.trailing_zeros() as usize;
             covered &= covered - 1;
             let (row, column) = (bit / SMALL_SIDE, bit % SMALL_SIDE);
             let start = varyings.at([weights[0][row], weights[1][row]]).first;
-            // The remainder only tells that it is a place in the list.
+            // The remainder only tells that it is in the list.
             let packed = start + step * f32x8::splat(STEPS[(column - firsts[row] as usize) % SMALL_SIDE]);
             self.enqueue(frame, packed, corner + row * width + column);
         }
@@ -134,14 +134,14 @@ impl<'a> Tile<'a> {
         &mut self,
         frame: &Frame<'_, S, N>,
         packed: f32x8,
-        place: usize,
+        index: usize,
     ) {
         // Stored depths never grow: what fails now fails later.
-        if frame.is_plain && packed.as_array_ref()[1] > self.band.depths[place] {
+        if frame.is_plain && packed.as_array_ref()[1] > self.band.depths[index] {
             return;
         }
         self.queue.packed[self.queue.count] = packed;
-        self.queue.places[self.queue.count] = place;
+        self.queue.indices[self.queue.count] = index;
         self.queue.count += 1;
         if self.queue.count == LANES {
             self.flush(frame);
@@ -174,8 +174,8 @@ impl<'a> Tile<'a> {
         let opaque = opaque(shaded.color).to_array();
         let channels = shaded.color.channels();
         for lane in (0..count).filter(|lane| kept >> lane & 1 == 1) {
-            let place = self.queue.places[lane];
-            let (color, depth) = (&mut self.band.colors[place], &mut self.band.depths[place]);
+            let index = self.queue.indices[lane];
+            let (color, depth) = (&mut self.band.colors[index], &mut self.band.depths[index]);
             if !depth_test.passes(depths[lane], *depth) {
                 continue;
             }
@@ -199,7 +199,7 @@ impl<'a> Tile<'a> {
         area: Rect,
     ) {
         self.flush(frame);
-        let setup = TriangleSetup::new(triangle.places);
+        let setup = TriangleSetup::new(triangle.positions);
         self.spans.find(&setup, area.rows(), frame.columns);
         if frame.is_plain {
             draw_rows::<true, S, N>(frame, triangle, &setup, &self.spans, area, &mut self.band);
@@ -222,7 +222,7 @@ fn draw_rows<const PLAIN: bool, S: Shader<N>, const N: usize>(
     band: &mut Band<'_>,
 ) {
     let (bottom_left, stride, to_next_band) =
-        (band.place((area.left, area.bottom)), band.stride, band.to_next_band);
+        (band.index((area.left, area.bottom)), band.stride, band.to_next_band);
     let (colors, depths) = (&mut *band.colors, &mut *band.depths);
     let varyings = PackedTriangleVaryings::<N>::of(triangle);
     let step = varyings.change(setup.weight_step()).spread();
@@ -236,22 +236,22 @@ fn draw_rows<const PLAIN: bool, S: Shader<N>, const N: usize>(
         let (first, covered, weights) = spans.row(row, &area.columns());
         let start = varyings.at(weights).spread();
         let mut right = Lanes::splat((covered.start - first) as f32) + Lanes::new(STEPS);
-        let mut place = bottom_left + row * stride + (covered.start - area.left) as usize;
+        let mut index = bottom_left + row * stride + (covered.start - area.left) as usize;
         let mut count = covered.end - covered.start;
         while count > 0 {
             let mut bits = ALL >> (LANES as i32 - count).max(0);
-            if place > last {
+            if index > last {
                 // Fewer than eight are left of the band: the group begins as many before.
-                let before = (place - last) as i32;
+                let before = (index - last) as i32;
                 bits <<= before;
                 right -= Lanes::splat(before as f32);
-                place = last;
+                index = last;
             }
-            let (colors, depths) = (eight(colors, place), eight(depths, place));
+            let (colors, depths) = (eight(colors, index), eight(depths, index));
             fetch_ahead(to_next_band, colors, depths);
             let linear = start.moved(&step, right);
             thrown_away |= draw_group::<PLAIN, S, N>(frame, linear, &gradients, bits, colors, depths);
-            place += LANES;
+            index += LANES;
             count -= LANES as i32;
             right += Lanes::splat(LANES as f32);
         }

@@ -24,7 +24,7 @@ use crate::varyings::LinearVaryings;
 /// Vertices, made ready for triangles.
 #[derive(Debug, Default)]
 pub(super) struct Vertices {
-    places: Vec<SnappedPosition>,
+    positions: Vec<SnappedPosition>,
     /// Which planes a vertex lies outside of, a bit each; and the bit below.
     outside: Vec<u8>,
     /// 1/ω, depth, V/ω: as many blocks of eight numbers for a vertex as it takes.
@@ -38,14 +38,14 @@ pub(super) const NOT_REPRESENTABLE: u8 = 1 << 7;
 /// A triangle as a tile needs it.
 #[derive(Clone, Copy)]
 pub(super) struct Triangle<'a> {
-    pub(super) places: [SnappedPosition; 3],
+    pub(super) positions: [SnappedPosition; 3],
     pub(super) packed: [&'a [f32x8]; 3],
 }
 
 impl Triangle<'_> {
-    /// The places, as [`edge`](crate::exact::edge) knows them.
+    /// The positions, as [`edge`](crate::exact::edge) knows them.
     pub(super) fn vertices(&self) -> [Subpixel; 3] {
-        self.places.map(|place| place.map(i64::from))
+        self.positions.map(|position| position.map(i64::from))
     }
 }
 
@@ -60,7 +60,7 @@ const fn blocks_of(varyings: usize) -> usize {
 impl Vertices {
     /// Forgets all.
     pub(super) fn clear(&mut self) {
-        self.places.clear();
+        self.positions.clear();
         self.outside.clear();
         self.packed.clear();
     }
@@ -77,19 +77,19 @@ impl Vertices {
         // Rounded up to a multiple of four. What is too much repeats the last vertex, and no triangle names it.
         let count = vertices.len().next_multiple_of(AT_A_TIME);
         let blocks = blocks_of(N);
-        self.places.resize(count, [0; 2]);
+        self.positions.resize(count, [0; 2]);
         self.outside.resize(count, 0);
         self.packed.resize(count * blocks, f32x8::ZERO);
-        self.each_part(blocks, &|first, Slots { places, outside, packed }| {
+        self.each_part(blocks, &|first, Slots { positions, outside, packed }| {
             // Computed again: so it is a constant in here, and not a captured number.
             let blocks = blocks_of(N);
-            let slots = places.as_chunks_mut().0.iter_mut().zip(outside.as_chunks_mut().0);
+            let slots = positions.as_chunks_mut().0.iter_mut().zip(outside.as_chunks_mut().0);
             let slots = slots.zip(packed.chunks_exact_mut(AT_A_TIME * blocks));
-            for (four, ((places, outside), packed)) in slots.enumerate() {
+            for (four, ((positions, outside), packed)) in slots.enumerate() {
                 let number = |i: usize| (first + four * AT_A_TIME + i).min(vertices.len() - 1);
                 let clip: [ClipVertex<N>; AT_A_TIME] = from_fn(|i| shader.vertex(&vertices[number(i)]));
                 let ndc;
-                (*places, *outside, ndc) = projection.project(&clip);
+                (*positions, *outside, ndc) = projection.project(&clip);
                 let packed = packed.chunks_exact_mut(blocks);
                 for ((vertex, position), packed) in clip.iter().zip(ndc).zip(packed) {
                     let ClipVertex { position: DVec4 { w, .. }, varyings } = *vertex;
@@ -105,11 +105,11 @@ impl Vertices {
     /// Hands the vertices out in parts, to all threads; `shade` is told the number of the first in each.
     fn each_part(&mut self, blocks: usize, shade: &(dyn Fn(usize, Slots<'_>) + Sync)) {
         const PART: usize = 256 * AT_A_TIME;
-        let places = self.places.par_chunks_mut(PART);
-        let parts = places.zip(self.outside.par_chunks_mut(PART));
+        let positions = self.positions.par_chunks_mut(PART);
+        let parts = positions.zip(self.outside.par_chunks_mut(PART));
         let parts = parts.zip(self.packed.par_chunks_mut(PART * blocks)).enumerate();
-        parts.for_each(|(i, ((places, outside), packed))| {
-            shade(i * PART, Slots { places, outside, packed });
+        parts.for_each(|(i, ((positions, outside), packed))| {
+            shade(i * PART, Slots { positions, outside, packed });
         });
     }
 
@@ -119,26 +119,26 @@ impl Vertices {
         corners: &[NdcVertex<N>; 3],
         projection: &Projection<'_>,
     ) -> Option<[SnappedPosition; 3]> {
-        let [a, b, c] = corners.each_ref().map(|vertex| projection.place_of(vertex));
-        let places = [a?, b?, c?];
+        let [a, b, c] = corners.each_ref().map(|vertex| projection.snapped_position(vertex));
+        let positions = [a?, b?, c?];
         let first = self.packed.len();
-        self.places.extend(places);
+        self.positions.extend(positions);
         self.packed.resize(first + 3 * blocks_of(N), f32x8::ZERO);
         for (vertex, packed) in corners.iter().zip(self.packed[first..].chunks_exact_mut(blocks_of(N))) {
             pack(vertex, projection.state.interpolation, packed);
         }
-        Some(places)
+        Some(positions)
     }
 
     /// How many triangles have been pushed.
     pub(super) fn triangle_count(&self) -> usize {
-        self.places.len() / 3
+        self.positions.len() / 3
     }
 
     /// Where vertices are.
     #[inline(always)]
-    pub(super) fn places(&self, corners: [usize; 3]) -> [SnappedPosition; 3] {
-        corners.map(|corner| self.places[corner])
+    pub(super) fn positions(&self, corners: [usize; 3]) -> [SnappedPosition; 3] {
+        corners.map(|corner| self.positions[corner])
     }
 
     /// What each of them lies outside of.
@@ -149,13 +149,13 @@ impl Vertices {
 
     /// A triangle of vertices with so many varyings.
     ///
-    /// Inlined, as [`SmallTriangleSetup::new`](super::edges::SmallTriangleSetup::new) is: places that are written to memory here would be read there
+    /// Inlined, as [`SmallTriangleSetup::new`](super::edges::SmallTriangleSetup::new) is: positions that are written to memory here would be read there
     /// in wider pieces, for which the processor waits.
     #[inline(always)]
     pub(super) fn triangle<const N: usize>(&self, corners: [usize; 3]) -> Triangle<'_> {
         let blocks = blocks_of(N);
         Triangle {
-            places: self.places(corners),
+            positions: self.positions(corners),
             packed: corners.map(|corner| &self.packed[corner * blocks..(corner + 1) * blocks]),
         }
     }
@@ -163,7 +163,7 @@ impl Vertices {
 
 /// Some vertices, one after the other, to be filled.
 struct Slots<'a> {
-    places: &'a mut [SnappedPosition],
+    positions: &'a mut [SnappedPosition],
     outside: &'a mut [u8],
     packed: &'a mut [f32x8],
 }
@@ -210,8 +210,8 @@ impl<'a> Projection<'a> {
     }
 
     /// Where on the screen a vertex is, if it is near enough.
-    fn place_of<const N: usize>(&self, vertex: &NdcVertex<N>) -> Option<SnappedPosition> {
-        snap(self.viewport.pixel_areas(vertex.position)).map(|place| place.map(|along| along as i32))
+    fn snapped_position<const N: usize>(&self, vertex: &NdcVertex<N>) -> Option<SnappedPosition> {
+        snap(self.viewport.pixel_areas(vertex.position)).map(|position| position.map(|along| along as i32))
     }
 
     // ANCHOR: project_vertices
@@ -243,8 +243,8 @@ impl<'a> Projection<'a> {
 
         let is_finite = clip.map(|component| is_within(component, f64::MAX));
         let is_near = [is_within(ndc[0], GUARD_BAND), is_within(ndc[1], GUARD_BAND)];
-        let is_placed = pixels.map(|along| is_within(along, FARTHEST));
-        let answers = is_finite.into_iter().chain(is_near).chain(is_placed);
+        let is_snappable = pixels.map(|along| is_within(along, FARTHEST));
+        let answers = is_finite.into_iter().chain(is_near).chain(is_snappable);
         let is_ready = answers.fold(w.cmp_gt(f64x4::ZERO), |all, answer| all & answer);
         let outside = self.outside(clip) | unless(is_ready, NOT_REPRESENTABLE.into());
 
@@ -281,7 +281,7 @@ fn rounded(numbers: f64x4) -> f64x4 {
     (nearest + too_low).flip_signs(numbers)
 }
 
-/// Whole numbers of at most 31 bits and a sign, such as places are (25 bits), as integers.
+/// Whole numbers of at most 31 bits and a sign, such as positions are (25 bits), as integers.
 ///
 /// One addition, where `as` asks first whether the number fits.
 #[inline(always)]
@@ -311,7 +311,7 @@ mod tests {
 
         #[test]
         fn four_vertices_as_one_by_one(
-            positions in prop::array::uniform4(position()),
+            clip in prop::array::uniform4(position()),
             clip_test in prop::sample::select(vec![ClipTest::BeforeDivide, ClipTest::AfterDivide]),
             clip_volume in prop::sample::select(vec![ClipVolume::Canonical, ClipVolume::InFront(0.5), ClipVolume::Everything]),
             side in prop::sample::select(vec![640.0, 1.0, 1e5, 1e9]),
@@ -319,20 +319,20 @@ mod tests {
             let viewport = Some(Viewport { x: -3.5, y: 2.0, width: side, height: 480.0 });
             let state = RenderState { clip_test, clip_volume, viewport, ..RenderState::default() };
             let projection = Projection::new(&state, Rect::sized(640, 480));
-            let vertices = positions.map(|position| ClipVertex { position, varyings: [] });
-            let (places, outside, ndc) = projection.project(&vertices);
+            let vertices = clip.map(|position| ClipVertex { position, varyings: [] });
+            let (positions, outside, ndc) = projection.project(&vertices);
             for i in 0..AT_A_TIME {
                 let one = NdcVertex::<0>::from(vertices[i]);
-                let is_ready = positions[i].is_finite() && is_in_guard_band(&one);
-                let place = projection.place_of(&one).filter(|_| is_ready);
-                prop_assert_eq!(outside[i] & NOT_REPRESENTABLE != 0, place.is_none());
-                if let Some(place) = place {
-                    prop_assert_eq!(places[i], place);
+                let is_ready = clip[i].is_finite() && is_in_guard_band(&one);
+                let position = projection.snapped_position(&one).filter(|_| is_ready);
+                prop_assert_eq!(outside[i] & NOT_REPRESENTABLE != 0, position.is_none());
+                if let Some(position) = position {
+                    prop_assert_eq!(positions[i], position);
                     prop_assert_eq!(ndc[i], one.position);
                 }
                 let asked = match clip_test {
-                    ClipTest::BeforeDivide => positions[i],
-                    ClipTest::AfterDivide => positions[i] / positions[i].w,
+                    ClipTest::BeforeDivide => clip[i],
+                    ClipTest::AfterDivide => clip[i] / clip[i].w,
                 };
                 let planes = projection.planes.iter().enumerate();
                 let expected = planes.fold(0, |bits, (number, plane)| {
