@@ -94,10 +94,10 @@ impl MipMaps {
     #[must_use]
     pub fn bilinear<R: Real>(&self, uv: [R; 2], level: R, mode: AddressMode) -> [R; 3] {
         let level = (level + R::of(0.5)).floor();
-        let size: [R; 2] = R::look_up(level, R::of(0.0), |level, _| self.size_and_start(level).0);
-        let [start]: [R; 1] = R::look_up(level, R::of(0.0), |level, _| [self.size_and_start(level).1]);
+        let size: [R; 2] = R::gather(level, R::of(0.0), |level, _| self.size_and_start(level).0);
+        let [start]: [R; 1] = R::gather(level, R::of(0.0), |level, _| [self.size_and_start(level).1]);
         bilinear(uv, size, mode, |column, row| {
-            R::look_up(column, start + row, |column, row| self.texel(column, row))
+            R::gather(column, start + row, |column, row| self.texel(column, row))
         })
     }
 

@@ -59,7 +59,7 @@ impl Shader<2> for Floor {
             Filter::Trilinear => self.maps.trilinear(uv, level, self.mode),
             Filter::Levels => {
                 let texel = self.maps.bilinear(uv, level, self.mode);
-                let tint = R::look_up(level + R::of(0.5), R::of(0.0), |level, _| tint(level));
+                let tint = R::gather(level + R::of(0.5), R::of(0.0), |level, _| tint(level));
                 [0, 1, 2].map(|k| texel[k] * R::of(0.5) + tint[k] * R::of(0.5))
             }
         })

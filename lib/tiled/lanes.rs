@@ -20,7 +20,7 @@ use bytemuck::cast;
 use wide::{CmpEq, CmpGt, CmpLe, CmpLt, f32x8, i32x8};
 
 use crate::color::Color;
-use crate::real::{Mask, Real};
+use crate::real::{Mask, Real, sealed};
 
 /// How many numbers.
 pub const LANES: usize = 8;
@@ -34,6 +34,8 @@ pub(crate) const ALL: i32 = 0xFF;
 /// Yes or no for each of eight numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct LaneMask(f32x8);
+
+impl sealed::Sealed for LaneMask {}
 
 impl Mask for LaneMask {
     #[inline]
@@ -84,6 +86,8 @@ pub(crate) fn is_less_or_equal(a: Lanes, b: Lanes) -> LaneMask {
 pub(crate) fn is_greater(a: Lanes, b: Lanes) -> LaneMask {
     LaneMask(a.cmp_gt(b))
 }
+
+impl sealed::Sealed for f32x8 {}
 
 impl Real for f32x8 {
     type Mask = LaneMask;
@@ -138,7 +142,7 @@ impl Real for f32x8 {
     }
 
     #[inline]
-    fn look_up<const C: usize>(
+    fn gather<const C: usize>(
         column: Self,
         row: Self,
         table: impl Fn(usize, usize) -> [f64; C],
@@ -149,7 +153,7 @@ impl Real for f32x8 {
     }
 
     #[inline]
-    fn look_up_color(column: Self, row: Self, row_bits: u32, colors: &[Color]) -> i32x8 {
+    fn gather_color(column: Self, row: Self, row_bits: u32, colors: &[Color]) -> i32x8 {
         let indices = (row.fast_trunc_int() << row_bits) + column.fast_trunc_int();
         // Two by two: half as many numbers leave the register, which keeps those parts of the processor busy that the
         // arithmetic needs.
@@ -238,7 +242,7 @@ mod tests {
         let colors: Vec<Color> = (0..8).map(|i| Color::rgb(i * 10, i, 255 - i)).collect();
         let columns = Lanes::new([0.0, 1.0, 2.0, 0.0, 1.0, 2.0, 1.0, 0.0]);
         let rows = Lanes::new([0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 0.0, 1.0]);
-        let [red, ..] = Lanes::channels(Lanes::look_up_color(columns, rows, 2, &colors));
+        let [red, ..] = Lanes::channels(Lanes::gather_color(columns, rows, 2, &colors));
         assert_eq!(red.to_array(), [0.0, 10.0, 20.0, 40.0, 50.0, 60.0, 10.0, 40.0]);
     }
 }
