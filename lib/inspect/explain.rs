@@ -71,7 +71,7 @@ impl History {
 fn explain(events: &[Event], pixel: Pixel, picture: Rect) -> Findings {
     let mut explainer = Explainer {
         pixel,
-        window: picture,
+        picture,
         factor: 1,
         number: 0,
         assembled: None,
@@ -108,7 +108,7 @@ fn ranges(numbers: &[usize]) -> String {
 /// Where we are in the events.
 struct Explainer<'a> {
     pixel: Pixel,
-    window: Rect,
+    picture: Rect,
     factor: u32,
     /// Of triangles and lines, counted from 1.
     number: usize,
@@ -219,7 +219,7 @@ impl<'a> Explainer<'a> {
     }
 
     fn screen(&self) -> Rect {
-        let [width, height] = [self.window.right, self.window.top].map(|side| side as u32 / self.factor);
+        let [width, height] = [self.picture.right, self.picture.top].map(|side| side as u32 / self.factor);
         Rect::sized(width, height)
     }
 

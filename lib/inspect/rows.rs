@@ -12,7 +12,7 @@ use crate::rect::{Pixel, Rect};
 use crate::scanline::{Edge, Half, HalfFill, StepLimit, Walk, split};
 
 /// The step of a line that drew a pixel.
-pub(super) fn line_at(line: &Line, pixel: Pixel, window: Rect) -> Vec<Field> {
+pub(super) fn line_at(line: &Line, pixel: Pixel, screen: Rect) -> Vec<Field> {
     let ends = [("a", line.a), ("b", line.b)];
     let ends = ends.map(|(name, p)| (name.to_owned(), p.to_array().map(Some).to_vec())).to_vec();
     let mut fields = vec![
@@ -20,9 +20,9 @@ pub(super) fn line_at(line: &Line, pixel: Pixel, window: Rect) -> Vec<Field> {
         field("slope", "k = Δy/Δx", Value::Number(line.slope())),
     ];
     let (visible, [running, other], [low, high]) = if line.is_x_major() {
-        (window.columns(), ["x", "y"], [line.a.x, line.b.x])
+        (screen.columns(), ["x", "y"], [line.a.x, line.b.x])
     } else {
-        (window.rows(), ["y", "x"], [line.a.y, line.b.y])
+        (screen.rows(), ["y", "x"], [line.a.y, line.b.y])
     };
     let start = low.min(high);
     line.step(visible, |at, [along, across]| {
@@ -56,11 +56,11 @@ fn payload_at<P: Payload>(
     carried: &Half<P>,
     walk: Walk,
     (x, y): Pixel,
-    window: Rect,
+    screen: Rect,
     row_payload: impl Fn([P; 2]) -> [P; 2],
 ) -> Vec<([f64; 2], [P; 3])> {
     let mut found = Vec::new();
-    half.step(carried, walk, window, |span, ends| {
+    half.step(carried, walk, screen, |span, ends| {
         if span.y == y {
             let [from, to] = row_payload(ends);
             span.step(from, to, walk.limit, |column, here| {
@@ -74,9 +74,9 @@ fn payload_at<P: Payload>(
 }
 
 /// Walks a half with the parameter t as its payload, from 0 to 1 on its edges and again along its rows.
-fn hits_of(half: &Half, index: usize, walk: Walk, pixel: Pixel, window: Rect) -> Vec<Hit> {
+fn hits_of(half: &Half, index: usize, walk: Walk, pixel: Pixel, screen: Rect) -> Vec<Hit> {
     let t = Edge { start: 0.0, end: 1.0 };
-    let found = payload_at(half, &Half { left: t, right: t }, walk, pixel, window, |_| [0.0, 1.0]);
+    let found = payload_at(half, &Half { left: t, right: t }, walk, pixel, screen, |_| [0.0, 1.0]);
     let hit = |(ends, [left, right, along]): ([f64; 2], [f64; 3])| Hit {
         half: index,
         ends,
@@ -87,7 +87,7 @@ fn hits_of(half: &Half, index: usize, walk: Walk, pixel: Pixel, window: Rect) ->
 }
 
 /// For each time that a triangle, or half of one, met the pixel: the fields.
-pub(super) fn rows_at(primitive: &Primitive, pixel: Pixel, window: Rect) -> Vec<Vec<Field>> {
+pub(super) fn rows_at(primitive: &Primitive, pixel: Pixel, screen: Rect) -> Vec<Vec<Field>> {
     match primitive {
         Primitive::Half(HalfFill { half: half @ Half { left, right }, walk }) => {
             let rows = [
@@ -98,10 +98,10 @@ pub(super) fn rows_at(primitive: &Primitive, pixel: Pixel, window: Rect) -> Vec<
             ];
             let rows = rows.map(|(name, p)| (name.to_owned(), p.to_array().map(Some).to_vec())).to_vec();
             let edges = field("sides", "on the screen", table(&["x", "y"], rows));
-            let hits = hits_of(half, 0, *walk, pixel, window);
+            let hits = hits_of(half, 0, *walk, pixel, screen);
             hits.iter().map(|hit| vec![edges.clone(), row_text("", hit, pixel)]).collect()
         }
-        Primitive::Triangle(triangle) => triangle_hits(triangle, pixel, window),
+        Primitive::Triangle(triangle) => triangle_hits(triangle, pixel, screen),
         Primitive::Line(_) | Primitive::Coverage(_) => Vec::new(),
     }
 }
@@ -153,28 +153,28 @@ fn stepped(
     limit: StepLimit,
     hit: usize,
     pixel: Pixel,
-    window: Rect,
+    screen: Rect,
     between: impl Fn(f64, f64, f64) -> f64,
 ) -> Option<[f64; 3]> {
     let split = split(triangle.positions)?;
     let walk = Walk { limit, ..triangle.walk };
     let halves = [split.lower, split.upper].into_iter().zip(split.attach(values, between));
     let mut found =
-        halves.flat_map(|(half, carried)| payload_at(&half, &carried, walk, pixel, window, |ends| ends));
+        halves.flat_map(|(half, carried)| payload_at(&half, &carried, walk, pixel, screen, |ends| ends));
     found.nth(hit).map(|(_, values)| values)
 }
 
-fn triangle_hits(triangle: &ScreenTriangle, pixel: Pixel, window: Rect) -> Vec<Vec<Field>> {
+fn triangle_hits(triangle: &ScreenTriangle, pixel: Pixel, screen: Rect) -> Vec<Vec<Field>> {
     let halves = halves(triangle);
-    let hits = halves.iter().enumerate().flat_map(|(i, half)| hits_of(half, i, triangle.walk, pixel, window));
-    hits.enumerate().map(|(i, hit)| hit_fields(triangle, i, &hit, pixel, window)).collect()
+    let hits = halves.iter().enumerate().flat_map(|(i, half)| hits_of(half, i, triangle.walk, pixel, screen));
+    hits.enumerate().map(|(i, hit)| hit_fields(triangle, i, &hit, pixel, screen)).collect()
 }
 
 /// What happened when a triangle met the pixel for the `number`th time.
-fn hit_fields(triangle: &ScreenTriangle, number: usize, hit: &Hit, pixel: Pixel, window: Rect) -> Vec<Field> {
+fn hit_fields(triangle: &ScreenTriangle, number: usize, hit: &Hit, pixel: Pixel, screen: Rect) -> Vec<Field> {
     let mut fields = screen_fields(triangle, hit, pixel);
     if triangle.w.is_none() {
-        fields.push(stepped_values(triangle, number, pixel, window));
+        fields.push(stepped_values(triangle, number, pixel, screen));
         return fields;
     }
     fields.extend(parameters(triangle, hit));
@@ -186,7 +186,7 @@ fn hit_fields(triangle: &ScreenTriangle, number: usize, hit: &Hit, pixel: Pixel,
     };
     let depths = triangle
         .depth
-        .and_then(|depth| stepped(triangle, depth, limit, number, pixel, window, |a, b, t| a + (b - a) * t));
+        .and_then(|depth| stepped(triangle, depth, limit, number, pixel, screen, |a, b, t| a + (b - a) * t));
     if let Some([left, right, here]) = depths {
         let rows = [("left", left), ("right", right), ("here", here)];
         let rows = rows.map(|(name, depth)| (name.to_owned(), vec![Some(depth)])).to_vec();
@@ -297,14 +297,14 @@ fn new_point(triangle: &ScreenTriangle, hit: &Hit, count: usize) -> Option<Vec<O
 }
 
 /// Chapter 3: each value is stepped by itself.
-fn stepped_values(triangle: &ScreenTriangle, hit: usize, pixel: Pixel, window: Rect) -> Field {
+fn stepped_values(triangle: &ScreenTriangle, hit: usize, pixel: Pixel, screen: Rect) -> Field {
     let count = triangle.varyings[0].len();
     let found: Vec<[f64; 3]> = (0..count)
         .map(|k| {
             let values = [0, 1, 2].map(|i| triangle.varyings[i][k]);
             let limit = triangle.walk.limit;
             let between = |a, b, t| linear([a], [b], t)[0];
-            stepped(triangle, values, limit, hit, pixel, window, between).unwrap_or_default()
+            stepped(triangle, values, limit, hit, pixel, screen, between).unwrap_or_default()
         })
         .collect();
     let mut rows: Vec<(String, Vec<Option<f64>>)> = Vec::new();
@@ -318,19 +318,19 @@ fn stepped_values(triangle: &ScreenTriangle, hit: usize, pixel: Pixel, window: R
 }
 
 /// Why a primitive did not reach a pixel that lies in its bounding box; `None` if it does not lie there.
-pub(super) fn miss(primitive: &Primitive, pixel: Pixel, window: Rect) -> Option<String> {
+pub(super) fn miss(primitive: &Primitive, pixel: Pixel, screen: Rect) -> Option<String> {
     match primitive {
         Primitive::Line(Line { a, b, .. }) => is_in_box(&[*a, *b], pixel)
             .then(|| "its other coordinate is cut to another pixel here".to_owned()),
         Primitive::Half(HalfFill { half: half @ Half { left, right }, walk }) => {
             let points = [left.start, left.end, right.start, right.end];
-            is_in_box(&points, pixel).then(|| row_miss(&[*half], *walk, pixel, window))
+            is_in_box(&points, pixel).then(|| row_miss(&[*half], *walk, pixel, screen))
         }
         Primitive::Triangle(triangle) => is_in_box(&triangle.positions, pixel)
-            .then(|| row_miss(&halves(triangle), triangle.walk, pixel, window)),
+            .then(|| row_miss(&halves(triangle), triangle.walk, pixel, screen)),
         Primitive::Coverage(coverage) => {
             let (x, y) = pixel;
-            coverage.bounding_box(window).contains(x, y).then(|| edge_miss(coverage, pixel))
+            coverage.bounding_box(screen).contains(x, y).then(|| edge_miss(coverage, pixel))
         }
     }
 }
@@ -343,10 +343,10 @@ fn is_in_box(points: &[DVec2], (x, y): Pixel) -> bool {
     place.cmpge(low).all() && place.cmple(high).all()
 }
 
-fn row_miss(halves: &[Half], walk: Walk, (_, y): Pixel, window: Rect) -> String {
+fn row_miss(halves: &[Half], walk: Walk, (_, y): Pixel, screen: Rect) -> String {
     let mut rows = Vec::new();
     for half in halves {
-        half.spans(walk, window, |span| {
+        half.spans(walk, screen, |span| {
             if span.y == y {
                 rows.push(format!("{:.3} to {:.3}", span.start, span.end));
             }

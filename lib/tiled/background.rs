@@ -20,11 +20,11 @@ impl Background {
     /// The background of a state. What is known of the planes is taken from them: they will be drawn on.
     pub(super) fn take(
         state: &RenderState,
-        window: Rect,
+        picture: Rect,
         colors: &mut PixelPlane<Color>,
         depths: &mut PixelPlane<f32>,
     ) -> Self {
-        let size = [window.right, window.top];
+        let size = [picture.right, picture.top];
         let blank = [Blank::take(colors, size), Blank::take(depths, size)];
         Self { load: state.load, color: state.clear_color, depth: state.clear_depth as f32, blank }
     }

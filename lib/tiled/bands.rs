@@ -14,25 +14,25 @@ pub(super) const TILE_WIDTH: i32 = 128;
 pub(super) const TILE_HEIGHT: i32 = 32;
 
 /// How many columns and rows of tiles a picture has.
-pub(super) fn tiles_of(window: Rect) -> [usize; 2] {
-    [(window.right, TILE_WIDTH), (window.top, TILE_HEIGHT)]
+pub(super) fn tiles_of(picture: Rect) -> [usize; 2] {
+    [(picture.right, TILE_WIDTH), (picture.top, TILE_HEIGHT)]
         .map(|(pixels, side)| (pixels as usize).div_ceil(side as usize))
 }
 
 // ANCHOR: bands
 /// Hands a picture out in bands, counted from below, each a part that belongs to one thread alone.
 pub(super) fn each_band(
-    window: Rect,
+    picture: Rect,
     colors: &mut [Color],
     depths: &mut [f32],
     draw: &(dyn Fn(usize, Band<'_>) + Sync),
 ) {
-    let width = window.right as usize;
+    let width = picture.right as usize;
     let pixels = width * TILE_HEIGHT as usize;
     let bands = colors.par_chunks_mut(pixels).zip(depths.par_chunks_mut(pixels)).enumerate();
     bands.for_each(|(row, (colors, depths))| {
         let bottom = row as i32 * TILE_HEIGHT;
-        let rect = Rect { bottom, top: (bottom + TILE_HEIGHT).min(window.top), ..window };
+        let rect = Rect { bottom, top: (bottom + TILE_HEIGHT).min(picture.top), ..picture };
         draw(row, Band { rect, stride: width, to_next_band: pixels, colors, depths });
     });
 }

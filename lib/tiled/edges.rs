@@ -280,8 +280,8 @@ mod tests {
         #[test]
         fn spans_are_exact(positions in triangle(), which in any::<prop::sample::Index>()) {
             let Some(coverage) = Coverage::of(positions.map(|position| position.map(i64::from))) else { return Ok(()) };
-            let window = Rect { left: 0, bottom: 0, right: COLUMNS, top: 100_000 };
-            let Some(area) = shared(box_of(positions), window) else { return Ok(()) };
+            let picture = Rect { left: 0, bottom: 0, right: COLUMNS, top: 100_000 };
+            let Some(area) = shared(box_of(positions), picture) else { return Ok(()) };
             let bottom = area.bottom + which.index(area.rows().len()) as i32;
             let rows = bottom..area.top.min(bottom + TILE_HEIGHT);
 
@@ -315,8 +315,8 @@ mod tests {
             let whole = box_of(positions);
             prop_assume!(is_at_most(whole, SMALL_SIDE as i32));
             // Rows may be missing below, which belong to another tile.
-            let window = Rect { bottom: i32::max(whole.bottom + below, 0), ..Rect::sized(2000, 2000) };
-            let Some(area) = shared(whole, window) else { return Ok(()) };
+            let picture = Rect { bottom: i32::max(whole.bottom + below, 0), ..Rect::sized(2000, 2000) };
+            let Some(area) = shared(whole, picture) else { return Ok(()) };
             let small = SmallTriangleSetup::new(positions, (area.left, area.bottom));
             let bits_of = |weights: [f32; 2]| weights.map(f32::to_bits);
             prop_assert_eq!(bits_of(small.weight_step()), bits_of(coverage.weight_step()));

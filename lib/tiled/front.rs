@@ -53,7 +53,7 @@ struct Context<'a> {
     projection: Projection<'a>,
     culls_clockwise: bool,
     culls_counterclockwise: bool,
-    window: Rect,
+    picture: Rect,
     columns: usize,
     tiles: usize,
 }
@@ -65,15 +65,15 @@ impl Front {
         source: &Source<'_, S, N>,
         shader: &S,
         state: &RenderState,
-        window: Rect,
+        picture: Rect,
     ) {
-        let [columns, rows] = tiles_of(window);
+        let [columns, rows] = tiles_of(picture);
         let culls = |winding| state.cull.culls_winding(winding, state.front_face);
         let context = Context {
-            projection: Projection::new(state, window),
+            projection: Projection::new(state, picture),
             culls_clockwise: culls(Winding::Clockwise),
             culls_counterclockwise: culls(Winding::CounterClockwise),
-            window,
+            picture,
             columns,
             tiles: columns * rows,
         };
@@ -227,7 +227,7 @@ impl Chunk {
         if area == 0 || is_culled {
             return;
         }
-        let Some(Rect { left, bottom, right, top }) = shared(box_of(positions), context.window) else {
+        let Some(Rect { left, bottom, right, top }) = shared(box_of(positions), context.picture) else {
             return;
         };
         self.has_large |= right - left >= TILE_WIDTH && top - bottom >= TILE_HEIGHT;

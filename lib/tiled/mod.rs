@@ -117,24 +117,24 @@ impl Tiled {
         state: &RenderState,
         target: &mut Target<f32>,
     ) {
-        let window = target.color.rect();
+        let picture = target.color.rect();
         // Two pictures at a time do not share working memory.
         let mut own = Front::default();
         let mut shared = self.front.try_lock();
         let front = shared.as_deref_mut().unwrap_or(&mut own);
         // Into the pool once, not once for each of the steps.
         in_pool(&mut || {
-            front.prepare(source, shader, state, window);
+            front.prepare(source, shader, state, picture);
             let frame = Frame {
                 shader,
                 state,
                 is_plain: is_plain(state),
                 front,
                 source,
-                columns: window.right,
+                columns: picture.right,
                 discards: AtomicBool::new(false),
             };
-            draw_tiles(&frame, window, target);
+            draw_tiles(&frame, picture, target);
         });
     }
 }
@@ -148,11 +148,15 @@ fn in_pool(work: &mut (dyn FnMut() + Send)) {
 
 // ANCHOR: tiles
 /// Draws all tiles, those of several bands at a time.
-fn draw_tiles<S: Shader<N>, const N: usize>(frame: &Frame<'_, S, N>, window: Rect, target: &mut Target<f32>) {
-    let [columns, rows] = tiles_of(window);
+fn draw_tiles<S: Shader<N>, const N: usize>(
+    frame: &Frame<'_, S, N>,
+    picture: Rect,
+    target: &mut Target<f32>,
+) {
+    let [columns, rows] = tiles_of(picture);
     let (colors, depths) = (target.color.plane_mut(), target.depth.plane_mut());
-    let background = Background::take(frame.state, window, colors, depths);
-    each_band(window, colors, depths, &|row, mut band| {
+    let background = Background::take(frame.state, picture, colors, depths);
+    each_band(picture, colors, depths, &|row, mut band| {
         // Here and not before: what was just written is still near when the tiles come.
         background.clear(&mut band, row * columns);
         band.with_room(|band| draw_band(frame, band, row * columns));

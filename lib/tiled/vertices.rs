@@ -203,10 +203,10 @@ impl WidePlane {
 type FourVertices = ([SnappedPosition; AT_A_TIME], [u8; AT_A_TIME], [DVec3; AT_A_TIME]);
 
 impl<'a> Projection<'a> {
-    pub(super) fn new(state: &'a RenderState, window: Rect) -> Self {
+    pub(super) fn new(state: &'a RenderState, picture: Rect) -> Self {
         let planes = state.clip_volume.planes(state.depth_range);
         let wide_planes = planes.iter().enumerate().map(WidePlane::new).collect();
-        Self { state, planes, wide_planes, viewport: state.viewport_in(window) }
+        Self { state, planes, wide_planes, viewport: state.viewport_in(picture) }
     }
 
     /// Where on the screen a vertex is, if it is near enough.
