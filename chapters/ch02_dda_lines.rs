@@ -28,7 +28,7 @@ pub(crate) const CHAPTER: Chapter = Chapter {
         )
         .source("section 2.1, Figure 2-2")
         .size(480, 480)
-        .mended_by("star"),
+        .remedied_by("star"),
         Variant::of_model_in_plane(
             "wireframe",
             wireframe,

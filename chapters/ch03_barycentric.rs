@@ -28,8 +28,8 @@ pub(crate) const CHAPTER: Chapter = Chapter {
             .source("section 3.2.2, Figures 3-6 and 3-7"),
         Variant::new("spikes", spikes, "orange: values out of the range of the corners, at the tips (past the end of an edge) and at the ends of rows")
             .source("section 11.4")
-            .mended_by("limited"),
-        Variant::new("limited-edges", limited_edges, "the same, limited along the edges as in the book: the tips are mended, the ends of rows are not")
+            .remedied_by("limited"),
+        Variant::new("limited-edges", limited_edges, "the same, limited along the edges as in the book: the tips are right, the ends of rows are not")
             .source("section 11.4"),
         Variant::new("limited", limited, "the same, limited along the rows too: no orange pixel is left"),
     ],

@@ -26,7 +26,7 @@ pub(crate) const CHAPTER: Chapter = Chapter {
             .source("section 5.4, Figure 5-8"),
         Variant::new("affine", affine, "the same square, interpolated on the screen: the line between the colors breaks at the diagonal")
             .source("section 5.3, Figure 5-3")
-            .mended_by("correct"),
+            .remedied_by("correct"),
         Variant::new("facing", facing, "a projected triangle that faces us: chapter 3 is still enough").source("section 5.1, Figure 5-1"),
         Variant::new("square", square, "two triangles make a square that faces us: no seam, no bend").source("section 5.2, Figure 5-2"),
         Variant::new("reciprocal", reciprocal, "the tilted square again, by way of 1/ω and V/ω: compare it with 'correct', not one pixel differs")
@@ -35,7 +35,7 @@ pub(crate) const CHAPTER: Chapter = Chapter {
             .source("first note"),
         Variant::new("floor", floor, "a checkered floor to the horizon: every line is straight, and the squares shrink towards the horizon"),
         Variant::new("floor-affine", floor_affine, "the same two triangles, interpolated on the screen: the floor folds along the diagonal")
-            .mended_by("floor"),
+            .remedied_by("floor"),
     ],
 };
 

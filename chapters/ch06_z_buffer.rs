@@ -26,15 +26,15 @@ pub(crate) const CHAPTER: Chapter = Chapter {
         Variant::new("painter", painter, "three squares drawn from far to near, without a depth test: each covers what is behind it")
             .source("section 6.1, Figure 6-2"),
         Variant::new("painter-red-first", painter_red_first, "two triangles that pierce each other, red drawn first: green covers red also where red is nearer")
-            .source("section 6.1, Figure 6-3").mended_by("intersecting"),
+            .source("section 6.1, Figure 6-3").remedied_by("intersecting"),
         Variant::new("painter-green-first", painter_green_first, "the same, green drawn first: no order is right")
-            .source("section 6.1, Figure 6-3").mended_by("intersecting"),
+            .source("section 6.1, Figure 6-3").remedied_by("intersecting"),
         Variant::new("intersecting", intersecting, "the same with a z-buffer: each triangle is seen where it is nearer, and they meet in a line")
             .source("section 6.2, Figure 6-3"),
         Variant::new("depth", depth, "a z-buffer, as hardware stores it, in 16 grays: black is near (1), white is far (12); most of them lie close by"),
         Variant::new("w-buffer", w_buffer, "the same scene with ω stored, in 16 grays: black is near (1), white is far (12); each stands for the same distance"),
         Variant::new("uncleared", uncleared, "the second frame of a moving square, depths of the first not cleared: the old square cuts a hole into the new one")
-            .source("section 6.2, section 9.4.1").mended_by("cleared"),
+            .source("section 6.2, section 9.4.1").remedied_by("cleared"),
         Variant::new("cleared", cleared, "the same frame with the depths cleared before it: the square is whole").source("section 6.2"),
     ],
 };

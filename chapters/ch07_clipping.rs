@@ -1,6 +1,6 @@
 //! # Chapter 7: clipping
 //!
-//! **What if a triangle reaches behind the eye?** There the division turns everything round. What is not in front must
+//! **What if a triangle reaches behind the eye?** There the division turns everything upside down. What is not in front must
 //! be cut away before the divide, and for that edges must be straight before the divide, depth included.
 //!
 //! New here: the depth a + b/z, which changes linearly on the screen (`lib/depth.rs`, `lib/interpolate.rs`), and clipping
@@ -28,7 +28,7 @@ pub(crate) const CHAPTER: Chapter = Chapter {
         Variant::new("reciprocal", reciprocal, "two crossing walls with the depth −1/z: they meet in a straight, upright line")
             .source("section 7.2"),
         Variant::new("behind", behind, "a floor that begins behind the eye, not clipped: what is behind us turns up in the sky, upside down")
-            .source("section 7.3, Figure 7-5").mended_by("in-front"),
+            .source("section 7.3, Figure 7-5").remedied_by("in-front"),
         Variant::new("in-front", in_front, "the same floor, clipped at the near plane: it ends at the horizon, and below the picture's lower edge")
             .source("section 7.3, Figure 7-5"),
         Variant::new("polygon", polygon, "left: a polygon and a line that cuts it; right: what is left. Green: where the outline enters, red: where it leaves")

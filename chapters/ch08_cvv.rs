@@ -29,7 +29,7 @@ pub(crate) const CHAPTER: Chapter = Chapter {
         Variant::new("frustum", frustum, "left: 35 points in the view volume from above, the eye at the bottom; right: the same in NDC. Equal steps in depth crowd together far away")
             .source("section 8.1, Figure 8-4").size(760, 400),
         Variant::new("divide-first", divide_first, "a floor that passes under the eye, tested after the divide: behind us the comparison turns round, and the floor is cut off far before our feet")
-            .source("section 8.3").mended_by("clip-first"),
+            .source("section 8.3").remedied_by("clip-first"),
         Variant::new("clip-first", clip_first, "the same floor, clipped before the divide: it comes up to the near plane, at the lower border").source("section 8.3"),
         Variant::new("zero-to-one", zero_to_one, "Direct3D's range, 0 ≤ z ≤ ω: another projection, another near plane, the same picture as 'clipped'"),
     ],

@@ -109,7 +109,7 @@ pub enum ClipTest {
     BeforeDivide,
     /// NDC: x/ω is compared with 1, a mistake.
     ///
-    /// - Cause: behind the eye ω is negative, and the division turns the comparison round: what is outside seems inside.
+    /// - Cause: behind the eye ω is negative, and the division reverses the comparison: what is outside seems inside.
     ///   Nor is x/ω linear along an edge, so that the cut is made in the wrong place.
     /// - Artefact: a triangle that passes the eye is cut where it should not be, or turns up where nothing is.
     /// - Remedy: [`ClipTest::BeforeDivide`]. Book, section 8.3; second note, the proof about w.
@@ -357,7 +357,7 @@ mod tests {
         (-3.0..3.0, -3.0..3.0, -3.0..3.0, -1.0..3.0).prop_map(|(x, y, z, w)| dvec4(x, y, z, w))
     }
 
-    /// A triangle whose values are its positions, so that a value tells where it came from.
+    /// A triangle whose values are its positions, so that a value shows where it came from.
     fn triangle() -> impl Strategy<Value = [ClipVertex<4>; 3]> {
         prop::array::uniform3(position().prop_map(|p| ClipVertex { position: p, varyings: p.to_array() }))
     }
@@ -429,8 +429,8 @@ mod tests {
                 for plane in &Plane::CANONICAL {
                     prop_assert!(plane.signed_distance(vertex.position) >= -1e-12);
                 }
-                let told = DVec4::from_array(vertex.varyings);
-                prop_assert!((told - vertex.position).length() < 1e-12, "values stay with their places");
+                let expected = DVec4::from_array(vertex.varyings);
+                prop_assert!((expected - vertex.position).length() < 1e-12, "values stay with their positions");
             }
         }
 

@@ -1,7 +1,7 @@
 //! Chapter 10, beyond the book: smaller and smaller copies of a texture, so that a pixel always covers about one texel.
 //!
 //! Takes texture coordinates and how they change from pixel to pixel, and gives a filtered color. Where a pixel covers
-//! many texels, one of them, or four, says little about their mean; the *mip maps* hold that mean, reckoned beforehand.
+//! many texels, one of them, or four, says little about their mean; the *mip maps* hold that mean, computed beforehand.
 //!
 //! ```
 //! use rasterbook::Color;

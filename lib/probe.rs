@@ -1,7 +1,7 @@
 //! Chapter 9: what the pipeline reports on the way to a pixel.
 //!
-//! An [`Observer`] hears of the stages of the early chapters and of the framebuffer; a [`Probe`] hears of the pipeline's
-//! stages too. It is a parameter of [`draw`](crate::draw): with [`Silent`], nothing is left of the calls. What is reported
+//! To an [`Observer`] the framebuffer and the stages of the early chapters report; to a [`Probe`] the pipeline's stages
+//! too. It is a parameter of [`draw`](crate::draw): with [`Silent`], nothing is left of the calls. What is reported
 //! is made only if it is wanted, hence the functions.
 //!
 //! ```

@@ -17,7 +17,7 @@
 
 use crate::framebuffer::Framebuffer;
 
-/// A screen's front buffer, which is seen; the back buffer, which is drawn into, is whoever draws's own. Book, section
+/// A screen's front buffer, which is seen; the back buffer, which is drawn into, belongs to the one who draws. Book, section
 /// 9.4.2, Figure 9-9.
 #[derive(Clone, Debug)]
 pub struct SwapChain {

@@ -29,7 +29,7 @@ use crate::real::{Mask, Real};
 ///         α′/ωa + β′/ωb + γ′/ωc                      ω     ωa   ωb   ωc
 /// ```
 ///
-/// Where all ω are equal, as under an orthographic projection, nothing changes. Where that cannot be reckoned, because
+/// Where all ω are equal, as under an orthographic projection, nothing changes. Where that cannot be computed, because
 /// an ω or the sum below the line is zero, the weights stay as they are. Source: first note, formulas 4 to 7.
 #[must_use]
 pub fn perspective_weights<R: Real>(weights: [R; 3], w: [R; 3]) -> [R; 3] {

@@ -31,12 +31,12 @@ fn every_mistake_has_a_test_and_a_real_remedy() {
         for variant in chapter.variants {
             match variant.mistake {
                 Mistake::No => assert!(!TESTED.contains(&variant.name), "{} is no mistake", variant.name),
-                Mistake::MendedBy(remedy) => {
+                Mistake::RemediedBy(remedy) => {
                     let remedy = chapter.find(remedy).expect("the remedy is a variant of the same chapter");
                     assert_eq!(remedy.mistake, Mistake::No);
                     assert_eq!(remedy.size, variant.size, "comparable");
                 }
-                Mistake::Unmended => {}
+                Mistake::WithoutRemedy => {}
             }
             let is_tested = variant.mistake == Mistake::No || TESTED.contains(&variant.name);
             assert!(is_tested, "no test here looks for the artefact of {} {}", chapter.name, variant.name);

@@ -136,7 +136,7 @@ fn pages_count_the_pixels_in_which_mistake_and_remedy_differ() {
     for (chapter, _) in CHAPTERS {
         let page = read(&root().join(format!("docs/src/{}.md", chapter.name)));
         for variant in chapter.variants {
-            let Mistake::MendedBy(remedy) = variant.mistake else { continue };
+            let Mistake::RemediedBy(remedy) = variant.mistake else { continue };
             let picture = |variant: &Variant| {
                 let subject = variant.subject().expect("assets");
                 variant.draw(&variant.options(subject.as_ref()))

@@ -1,4 +1,4 @@
-//! Where light is reckoned (faces, corners, pixels), which highlight there is, and how normals are turned.
+//! Where light is computed (faces, corners, pixels), which highlight there is, and how normals are turned.
 
 use std::f64::consts::{PI, TAU};
 
@@ -50,7 +50,7 @@ fn faceted(ball: &Mesh<Corner>) -> Mesh<Corner> {
 }
 
 // ANCHOR: frequency
-/// Where light is reckoned.
+/// Where light is computed.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Frequency {
     /// In the vertex shader; colors are interpolated (Gouraud, 1971). With the normals of faces: flat shading.

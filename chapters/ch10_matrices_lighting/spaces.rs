@@ -1,4 +1,4 @@
-//! What the numbers of a color mean: light reckoned with stored numbers, and with amounts of light.
+//! What the numbers of a color mean: light computed with stored numbers, and with amounts of light.
 
 use glam::{DVec2, DVec4, dvec4};
 use rasterbook::figure::Canvas;
@@ -17,7 +17,7 @@ enum Space {
 }
 
 impl Space {
-    /// A stored color, 0..=255 → what is reckoned with, 0..=1.
+    /// A stored color, 0..=255 → what is computed with, 0..=1.
     fn enter<R: Real>(self, stored: [R; 3]) -> [R; 3] {
         match self {
             Self::Gamma => stored.map(|channel| channel / R::of(255.0)),
@@ -26,10 +26,10 @@ impl Space {
     }
 
     /// And back.
-    fn leave<R: Real>(self, reckoned: [R; 3]) -> [R; 3] {
+    fn leave<R: Real>(self, computed: [R; 3]) -> [R; 3] {
         match self {
-            Self::Gamma => reckoned.map(|channel| channel * R::of(255.0)),
-            Self::Linear => encode(reckoned),
+            Self::Gamma => computed.map(|channel| channel * R::of(255.0)),
+            Self::Linear => encode(computed),
         }
     }
 }

@@ -46,7 +46,7 @@ pub struct Variant {
     pub source: &'static str,
     /// Width and height in pixels, unless `--size` says otherwise.
     pub size: (u32, u32),
-    /// For a deliberate mistake: that it is one, and which variant mends it.
+    /// For a deliberate mistake: that it is one, and which variant is its remedy.
     pub mistake: Mistake,
     /// How long and how fast it is, if it is an animation.
     pub animation: Option<Animation>,
@@ -119,9 +119,9 @@ pub enum Mistake {
     /// It is right.
     No,
     /// It is wrong, and this variant of the same chapter is its remedy.
-    MendedBy(&'static str),
+    RemediedBy(&'static str),
     /// It is wrong, and the chapter has no remedy for it.
-    Unmended,
+    WithoutRemedy,
 }
 
 impl Variant {
@@ -200,16 +200,16 @@ impl Variant {
         Self { source, ..self }
     }
 
-    /// The same, but a mistake that another variant mends.
+    /// The same, but a mistake whose remedy is another variant.
     #[must_use]
-    pub const fn mended_by(self, remedy: &'static str) -> Self {
-        Self { mistake: Mistake::MendedBy(remedy), ..self }
+    pub const fn remedied_by(self, remedy: &'static str) -> Self {
+        Self { mistake: Mistake::RemediedBy(remedy), ..self }
     }
 
     /// The same, but a mistake without a remedy in its chapter.
     #[must_use]
-    pub const fn unmended(self) -> Self {
-        Self { mistake: Mistake::Unmended, ..self }
+    pub const fn without_remedy(self) -> Self {
+        Self { mistake: Mistake::WithoutRemedy, ..self }
     }
 
     /// Whether `--texture` means anything to it.

@@ -1,4 +1,4 @@
-//! The history of a pixel: what was recorded, told with the numbers of each chapter's formula.
+//! The history of a pixel: what was recorded, with the numbers of each chapter's formula.
 //!
 //! Nothing here draws. Of a primitive that reached the pixel, the stage is gone through once more with the same library
 //! functions, to find the numbers that it passed on the way.

@@ -1,4 +1,4 @@
-//! The numbers of vertices, clipping, edge functions, weights and fragments, as the history of a pixel tells them. Those
+//! The numbers of vertices, clipping, edge functions, weights and fragments, as the history of a pixel has them. Those
 //! of lines and rows are in `rows.rs`.
 
 use super::history::{Field, Value, field, table, value_names};

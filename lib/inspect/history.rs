@@ -5,7 +5,7 @@ use std::fmt::{self, Write as _};
 use crate::color::Color;
 use crate::rect::Pixel;
 
-/// Something that is told: one source for both forms.
+/// Something that is reported: one source for both forms.
 #[derive(Clone, Debug)]
 pub(super) enum Value {
     Number(f64),
@@ -19,7 +19,7 @@ pub(super) enum Value {
         columns: Vec<String>,
         rows: Vec<(String, Vec<Option<f64>>)>,
     },
-    /// Told to programs alone: for people it stands in a table.
+    /// For programs alone: for people it stands in a table.
     Group(Vec<Field>),
     Groups(Vec<Vec<Field>>),
     List(Vec<String>),
@@ -33,7 +33,7 @@ pub(super) struct Field {
     pub(super) value: Value,
 }
 
-/// A field that both are told.
+/// A field for both.
 pub(super) const fn field(key: &'static str, label: &'static str, value: Value) -> Field {
     Field { key, label, value }
 }
@@ -244,11 +244,11 @@ fn entry_json(entry: &Entry) -> String {
         hidden("kind", Value::Text(entry.kind.to_owned())),
         hidden("title", Value::Text(entry.title.clone())),
     ];
-    let told =
+    let named =
         |fields: &[Field]| fields.iter().filter(|field| !field.key.is_empty()).cloned().collect::<Vec<_>>();
-    fields.extend(told(&entry.fields));
+    fields.extend(named(&entry.fields));
     if !entry.hits.is_empty() {
-        fields.push(hidden("hits", Value::Groups(entry.hits.iter().map(|hit| told(hit)).collect())));
+        fields.push(hidden("hits", Value::Groups(entry.hits.iter().map(|hit| named(hit)).collect())));
     }
     value_json(&Value::Group(fields))
 }
@@ -277,7 +277,7 @@ fn value_json(value: &Value) -> String {
             };
             let row = |(name, cells): &(String, Vec<Option<f64>>)| {
                 let cells: Vec<String> = columns.iter().zip(cells).filter_map(cell).collect();
-                // Which row was used is told by a field of its own.
+                // Which row was used is said by a field of its own.
                 format!("{}: {{{}}}", text_json(name.trim_end_matches(USED)), cells.join(", "))
             };
             format!("{{{}}}", rows.iter().map(row).collect::<Vec<_>>().join(", "))

@@ -147,16 +147,16 @@ fn subject(chapter: &Chapter) -> [Arg; 4] {
 
 /// How a picture came about.
 fn what_to_tell() -> [Arg; 5] {
-    let inspect = "Tell all that happened at the pixel (X, Y), y up from the bottom; no picture is written";
+    let inspect = "Report all that happened at the pixel (X, Y), y up from the bottom; no picture is written";
     [
         option("inspect", "X,Y", inspect)
             .value_parser(parse_pixel)
             .allow_hyphen_values(true)
             .conflicts_with_all(["all", "animate", "compare", "zoom", "out"]),
-        option("format", "FORM", "The form of what is told: text, or json for programs [default: text]")
+        option("format", "FORM", "The form of the report: text, or json for programs [default: text]")
             .value_parser(["text", "json"])
             .requires("inspect"),
-        switch("verbose", "Tell also what came near the pixel and did not reach it")
+        switch("verbose", "Report also what came near the pixel and did not reach it")
             .short('v')
             .requires("inspect"),
         switch("steps", "Draw an animation of how the picture comes about, step by step")
@@ -203,7 +203,7 @@ fn how_to_draw(chapter: &Chapter) -> [Arg; 6] {
         option(
             "compare",
             "OTHER",
-            "Draw this | OTHER | where they differ; OTHER is a mistake's remedy unless told",
+            "Draw this | OTHER | where they differ; OTHER is a mistake's remedy if none is named",
         )
         .num_args(0..=1)
         .conflicts_with("all"),
@@ -216,8 +216,8 @@ pub(super) fn list(chapter: &Chapter) -> String {
     let line = |variant: &Variant| {
         let mistake = match variant.mistake {
             Mistake::No => String::new(),
-            Mistake::MendedBy(remedy) => format!(" [mistake; remedy: {remedy}]"),
-            Mistake::Unmended => " [mistake]".to_owned(),
+            Mistake::RemediedBy(remedy) => format!(" [mistake; remedy: {remedy}]"),
+            Mistake::WithoutRemedy => " [mistake]".to_owned(),
         };
         let source = if variant.source.is_empty() { String::new() } else { format!(" ({})", variant.source) };
         format!("  {:width$}  {}{source}{mistake}\n", variant.name, variant.look)

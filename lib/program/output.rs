@@ -113,7 +113,7 @@ pub(super) fn say(line: &str) -> Result<(), Failure> {
     })
 }
 
-/// A line on standard error; nobody is told if that fails.
+/// A line on standard error; a failure is not reported.
 pub(super) fn note(line: &str) {
     let _ = writeln!(std::io::stderr(), "{line}");
 }

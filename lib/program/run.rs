@@ -93,7 +93,7 @@ fn other<'a>(
 ) -> Result<&'a Variant, Failure> {
     match (comparison, variant.mistake) {
         (Comparison::With(name), _) => find(chapter, name),
-        (Comparison::Remedy, Mistake::MendedBy(remedy)) => find(chapter, remedy),
+        (Comparison::Remedy, Mistake::RemediedBy(remedy)) => find(chapter, remedy),
         (Comparison::Remedy, _) => Err(Failure::Usage(format!(
             "'{}' has no remedy to be compared with: name the other variant, --compare OTHER",
             variant.name
@@ -273,7 +273,7 @@ fn animate(variant: &Variant, request: &Request, destination: &Destination) -> R
     say(&path.display().to_string())
 }
 
-/// Tells the history of a pixel; nothing is written but text.
+/// Prints the history of a pixel; nothing is written but text.
 fn inspect_pixel(
     chapter: &Chapter,
     variant: &Variant,

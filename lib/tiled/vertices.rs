@@ -102,7 +102,7 @@ impl Vertices {
 }
 
 impl Vertices {
-    /// Hands the vertices out in parts, to all threads; `shade` is told the number of the first in each.
+    /// Hands the vertices out in parts, to all threads; `shade` gets the number of the first in each.
     fn each_part(&mut self, blocks: usize, shade: &(dyn Fn(usize, Slots<'_>) + Sync)) {
         const PART: usize = 256 * AT_A_TIME;
         let positions = self.positions.par_chunks_mut(PART);
