@@ -1,5 +1,60 @@
 //! **Rasterbook**: a software renderer in eleven programs that teaches how 3D rendering works.
 //!
+//! # A first picture
+//!
+//! A cube with a color for each corner, in perspective, with a depth buffer:
+//!
+//! ```
+//! use rasterbook::exact::Exact;
+//! use rasterbook::glam::{DVec3, dvec3};
+//! use rasterbook::transform::{Frustum, about, rotate_x_to_z, rotate_z_to_y};
+//! use rasterbook::{ClipVertex, LoadOp, Mesh, RenderState, Silent, Target, draw, shader};
+//!
+//! // Eight vertices, and two triangles for each of the six sides.
+//! let corner = |i: u32| dvec3((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64);
+//! let sides = [[0, 1, 3, 2], [5, 4, 6, 7], [4, 0, 2, 6], [1, 5, 7, 3], [2, 3, 7, 6], [4, 5, 1, 0]];
+//! let triangles = sides.iter().flat_map(|&[a, b, c, d]| [a, b, c, a, c, d]).collect();
+//! let cube = Mesh::indexed((0..8).map(corner).collect(), triangles)?;
+//!
+//! // Turned about its middle, and seen from the origin: +x is right, +y is up, +z is away from us.
+//! let camera = Frustum::from_field_of_view(0.7, 4.0 / 3.0, 1.0, 10.0);
+//! let turn = about(DVec3::splat(0.5), rotate_z_to_y(0.6) * rotate_x_to_z(0.7));
+//! let colored = shader::from_fn(
+//!     |&corner: &DVec3| {
+//!         let view = turn.transform_point3(corner) + dvec3(-0.5, -0.5, 3.0);
+//!         ClipVertex { position: camera.project(view), varyings: corner.to_array() }
+//!     },
+//!     |corner: [f64; 3]| corner.map(|channel| 55.0 + 200.0 * channel),
+//! );
+//!
+//! let mut target = Target::new(640, 480);
+//! let state = RenderState { load: LoadOp::Clear, ..RenderState::default() };
+//! draw(&cube, &colored, &state, &Exact::new(), &mut target, &Silent);
+//!
+//! // A PPM file needs nothing else; with the feature `files` there is `target.color.save("cube.png")`.
+//! target.color.write_ppm(std::fs::File::create(std::env::temp_dir().join("cube.ppm"))?)?;
+//! # let colors = |x, y| target.color.get(x, y).expect("inside");
+//! # assert_ne!(colors(320, 240), colors(0, 0), "something is in the middle");
+//! # let picture = target.color.rows_from_top().flatten().collect::<std::collections::HashSet<_>>();
+//! # assert!(picture.len() > 1000, "{} colors", picture.len());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Features
+//!
+//! | feature | what it brings |
+//! |---|---|
+//! | none | the renderer: all of chapters 1 to 10, and the exact rasterizer |
+//! | `tiled` | the fast rasterizer: eight numbers at a time, several threads |
+//! | `files` | models and textures from files, pictures into files |
+//! | `figure` | the chapters' figures: their tables, the canvas, the history of a pixel; with `files` |
+//! | `program` | what the eleven programs share: arguments, animations; with `figure` |
+//!
+//! `program` and `tiled` are on by default; a renderer in a program of your own needs neither:
+//! `rasterbook = { version = "0.1", default-features = false, features = ["files"] }`.
+//!
+//! # The rooms
+//!
 //! Every pixel is drawn by code in this library, on the CPU, and every room of it is met in the order of the book:
 //!
 //! ```text

@@ -65,6 +65,12 @@ pub trait Real:
     /// A function of one number, for each of them: what has no formula in the four operations, such as a power.
     #[must_use]
     fn map(self, function: impl Fn(f64) -> f64) -> Self;
+    /// The same for a function of N numbers that gives M, such as a fragment shader written for `f64`.
+    #[must_use]
+    fn map_all<const N: usize, const M: usize>(
+        values: [Self; N],
+        function: impl Fn([f64; N]) -> [f64; M],
+    ) -> [Self; M];
     /// Gathers a record of C numbers from a table, by two whole numbers that are not negative, such as a texel by column and row.
     #[must_use]
     fn gather<const C: usize>(column: Self, row: Self, table: impl Fn(usize, usize) -> [f64; C])
@@ -163,6 +169,14 @@ macro_rules! plain_number {
             #[inline]
             fn map(self, function: impl Fn(f64) -> f64) -> Self {
                 function(f64::from(self)) as Self
+            }
+
+            #[inline]
+            fn map_all<const N: usize, const M: usize>(
+                values: [Self; N],
+                function: impl Fn([f64; N]) -> [f64; M],
+            ) -> [Self; M] {
+                function(values.map(f64::from)).map(Self::of)
             }
 
             #[inline]

@@ -22,7 +22,7 @@ use crate::real::Scalar;
 use crate::scanline::Walk;
 
 /// What is drawn into: a plane of colors and a plane of depths, of the precision in which the rasterizer computes.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Target<D = f64> {
     /// The picture.
     pub color: Framebuffer,

@@ -65,7 +65,7 @@ pub fn weight_gradients<R: Real>([a, b, c]: [DVec2; 3]) -> WeightGradients<R> {
 // ANCHOR: triangle_varyings
 /// What changes linearly on the screen: what a corner carries, divided by ω; the same at a point between corners; or how
 /// much all of it changes from there to another point.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinearVaryings<R, const N: usize> {
     /// 1/ω; for [`Interpolation::Affine`] ω itself.
     pub distance: R,
@@ -137,7 +137,7 @@ impl<R: Real, const N: usize> LinearVaryings<R, N> {
 }
 
 /// What the corners of a triangle carry, made ready for weights: its value at the first, and the ways to the other two.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TriangleVaryings<R, const N: usize> {
     first: LinearVaryings<R, N>,
     to_second: LinearVaryings<R, N>,

@@ -333,3 +333,70 @@ impl Drop for Announced {
         self.scissor.report(|observer| observer.done());
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scanline::tests::grid;
+
+    /// How often each pixel of 10 × 6 is covered by some triangles; a `2` would be overdraw.
+    fn drawn(triangles: &[[(f64, f64); 3]]) -> String {
+        let mut counts = [[0; 10]; 6];
+        for triangle in triangles {
+            let coverage = Coverage::new(triangle.map(DVec2::from)).expect("a triangle with area");
+            for (x, y, _) in coverage.pixels(Rect::sized(10, 6)) {
+                counts[y as usize][x as usize] += 1;
+            }
+        }
+        grid(&counts)
+    }
+
+    /// The corners of a square whose sides run through the centers of pixels.
+    const A: (f64, f64) = (1.5, 0.5);
+    const B: (f64, f64) = (6.5, 0.5);
+    const C: (f64, f64) = (6.5, 5.5);
+    const D: (f64, f64) = (1.5, 5.5);
+
+    #[test]
+    fn centers_on_left_edges_are_covered_and_those_on_right_and_bottom_edges_are_not() {
+        let expected = "\
+            ..........\n\
+            .1........\n\
+            .11.......\n\
+            .111......\n\
+            .1111.....\n\
+            ..........\n";
+        assert_eq!(drawn(&[[A, B, D]]), expected);
+        assert_eq!(drawn(&[[A, D, B]]), expected, "whichever way it winds");
+    }
+
+    #[test]
+    fn centers_on_top_edges_are_covered() {
+        let expected = "\
+            .11111....\n\
+            .1111.....\n\
+            .111......\n\
+            .11.......\n\
+            .1........\n\
+            ..........\n";
+        assert_eq!(drawn(&[[A, C, D]]), expected);
+    }
+
+    #[test]
+    fn two_triangles_share_a_diagonal_through_centers_without_a_gap_or_overdraw() {
+        let expected = "\
+            .11111....\n\
+            .11111....\n\
+            .11111....\n\
+            .11111....\n\
+            .11111....\n\
+            ..........\n";
+        assert_eq!(drawn(&[[A, B, C], [A, C, D]]), expected);
+        assert_eq!(drawn(&[[B, C, D], [A, B, D]]), expected, "the other diagonal");
+    }
+
+    #[test]
+    fn between_the_centers_nothing_is_covered() {
+        assert_eq!(drawn(&[[(0.6, 1.6), (9.4, 1.7), (5.0, 2.4)]]), ("..........\n").repeat(6));
+    }
+}

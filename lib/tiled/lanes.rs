@@ -142,6 +142,16 @@ impl Real for f32x8 {
     }
 
     #[inline]
+    fn map_all<const N: usize, const M: usize>(
+        values: [Self; N],
+        function: impl Fn([f64; N]) -> [f64; M],
+    ) -> [Self; M] {
+        let values = values.map(Self::to_array);
+        let results: [[f64; M]; LANES] = from_fn(|lane| function(values.map(|value| f64::from(value[lane]))));
+        from_fn(|k| Self::new(from_fn(|lane| results[lane][k] as f32)))
+    }
+
+    #[inline]
     fn gather<const C: usize>(
         column: Self,
         row: Self,
@@ -205,6 +215,9 @@ mod tests {
         check(Real::floor(b), |_, b| Real::floor(b));
         check(Real::select(a.is_less(b), a, b), |a, b| if a < b { a } else { b });
         check(Real::map(b, |v| v * 0.1), |_, b| Real::map(b, |v| v * 0.1));
+        let both = |[a, b]: [f64; 2]| [a - b, a * 0.1];
+        check(Real::map_all([a, b], both)[0], |a, b| Real::map_all([a, b], |[a, b]| [a - b])[0]);
+        check(Real::map_all([a, b], both)[1], |a, _| Real::map_all([a], |[a]| [a * 0.1])[0]);
     }
 
     #[test]
