@@ -90,8 +90,10 @@ impl Framebuffer {
     #[inline]
     pub fn set(&mut self, x: i32, y: i32, color: Color) {
         self.set_pixel(x, y, color);
-        if self.observer.is_some() {
-            self.report_pixel(x, y, color);
+        if let Some(observer) = &self.observer
+            && self.rect().contains(x, y)
+        {
+            observer.written((x, y), color);
         }
     }
 
@@ -106,7 +108,8 @@ impl Framebuffer {
     /// Where the pixel (x, y) stands in memory; `None` outside the framebuffer.
     #[inline]
     fn index(&self, x: i32, y: i32) -> Option<usize> {
-        let is_inside = self.rect().contains(x, y);
+        // A negative number becomes a very large one.
+        let is_inside = (x as u32) < self.width && (y as u32) < self.height;
         is_inside.then(|| y as usize * self.width as usize + x as usize)
     }
     // ANCHOR_END: addressing
@@ -187,13 +190,6 @@ impl Framebuffer {
     pub(crate) fn report(&self, report: impl FnOnce(&dyn Observer)) {
         if let Some(observer) = &self.observer {
             report(observer.as_ref());
-        }
-    }
-
-    #[cold]
-    fn report_pixel(&self, x: i32, y: i32, color: Color) {
-        if self.rect().contains(x, y) {
-            self.report(|observer| observer.written((x, y), color));
         }
     }
 

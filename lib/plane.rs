@@ -10,7 +10,24 @@ use std::ops::{Deref, DerefMut};
 pub(crate) struct PixelPlane<T> {
     values: Vec<T>,
     #[cfg(feature = "tiled")]
-    memo: Option<Box<dyn std::any::Any + Send + Sync>>,
+    memo: Memo,
+}
+
+/// What is known of the values of a plane.
+#[cfg(feature = "tiled")]
+#[derive(Debug, Default)]
+struct Memo {
+    text: Option<Box<dyn std::any::Any + Send + Sync>>,
+    /// Whether no value has changed since. A write clears this flag, and does no more.
+    is_valid: bool,
+}
+
+#[cfg(feature = "tiled")]
+impl Memo {
+    #[inline]
+    const fn forget(&mut self) {
+        self.is_valid = false;
+    }
 }
 
 impl<T> From<Vec<T>> for PixelPlane<T> {
@@ -18,7 +35,7 @@ impl<T> From<Vec<T>> for PixelPlane<T> {
         Self {
             values,
             #[cfg(feature = "tiled")]
-            memo: None,
+            memo: Memo::default(),
         }
     }
 }
@@ -43,9 +60,7 @@ impl<T> DerefMut for PixelPlane<T> {
     #[inline]
     fn deref_mut(&mut self) -> &mut [T] {
         #[cfg(feature = "tiled")]
-        if self.memo.is_some() {
-            self.memo = None;
-        }
+        self.memo.forget();
         &mut self.values
     }
 }
@@ -54,12 +69,13 @@ impl<T> DerefMut for PixelPlane<T> {
 impl<T> PixelPlane<T> {
     /// Takes the memo out, if one of this type was left and no value has changed since.
     pub(crate) fn take_memo<M: 'static>(&mut self) -> Option<Box<M>> {
-        self.memo.take()?.downcast().ok()
+        let Memo { text, is_valid } = std::mem::take(&mut self.memo);
+        text.filter(|_| is_valid)?.downcast().ok()
     }
 
     /// Leaves a memo about the values as they are now.
     pub(crate) fn leave_memo<M: Send + Sync + 'static>(&mut self, memo: Box<M>) {
-        self.memo = Some(memo);
+        self.memo = Memo { text: Some(memo), is_valid: true };
     }
 }
 
