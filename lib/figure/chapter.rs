@@ -249,27 +249,21 @@ impl Variant {
     /// As [`Framebuffer::new`] does.
     #[must_use]
     pub fn draw(&self, options: &DrawOptions<'_>) -> Framebuffer {
+        let in_plane = |draw: &dyn Fn(&mut Framebuffer)| {
+            let mut framebuffer = options.framebuffer();
+            draw(&mut framebuffer);
+            framebuffer
+        };
+        let on_canvas = |draw: &dyn Fn(&mut Canvas)| {
+            let mut canvas = options.canvas(self.size);
+            draw(&mut canvas);
+            canvas.into_picture()
+        };
         match (self.figure, options.subject) {
-            (Figure::Plain(draw), _) => {
-                let mut framebuffer = options.framebuffer();
-                draw(&mut framebuffer);
-                framebuffer
-            }
-            (Figure::PlainModel(draw, _), Some(subject)) => {
-                let mut framebuffer = options.framebuffer();
-                draw(&mut framebuffer, subject);
-                framebuffer
-            }
-            (Figure::Canvas(draw), _) => {
-                let mut canvas = options.canvas(self.size);
-                draw(&mut canvas);
-                canvas.into_picture()
-            }
-            (Figure::Model(draw, _), Some(subject)) => {
-                let mut canvas = options.canvas(self.size);
-                draw(&mut canvas, subject);
-                canvas.into_picture()
-            }
+            (Figure::Plain(draw), _) => in_plane(&draw),
+            (Figure::PlainModel(draw, _), Some(subject)) => in_plane(&|picture| draw(picture, subject)),
+            (Figure::Canvas(draw), _) => on_canvas(&draw),
+            (Figure::Model(draw, _), Some(subject)) => on_canvas(&|canvas| draw(canvas, subject)),
             (Figure::PlainModel(..) | Figure::Model(..), None) => options.framebuffer(),
         }
     }
