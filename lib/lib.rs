@@ -26,7 +26,6 @@
 //!   ch11 light         ambient, Lambert, Phong, Blinn–Phong, normal maps
 //!   ch11 files         what is wrong with a file; textures from image files
 //!   ch11 model         models (OBJ) from files
-//!   ch11 normals       normals for models that have none
 //!   more mipmap        smaller copies of a texture, levels of detail
 //!   more srgb          what the numbers of a picture mean as light
 //!   more varyings      weights corrected by ω, derivatives
@@ -87,8 +86,6 @@ pub mod lanes;
 pub mod tiled;
 #[cfg(feature = "files")]
 pub mod files;
-#[cfg(feature = "files")]
-mod normals;
 #[cfg(feature = "files")]
 pub mod model;
 
