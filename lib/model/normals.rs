@@ -217,11 +217,20 @@ impl SmoothNormals {
     }
 }
 
-/// The normal of a face, as long as its angle at one of its corners.
+/// The normal of a face, as long as its angle at one of its corners. Corners that follow one another in the same place are
+/// one corner, as at the pole of a sphere: the first of them counts, the others are zero.
 fn weighted(positions: &[DVec3], at: usize, normal: DVec3) -> DVec3 {
-    let before = if at == 0 { positions.len() - 1 } else { at - 1 };
-    let after = if at + 1 == positions.len() { 0 } else { at + 1 };
-    normal * angle([positions[before], positions[at], positions[after]], normal)
+    let next = |i: usize| if i + 1 == positions.len() { 0 } else { i + 1 };
+    let here = positions[at];
+    let before = positions[if at == 0 { positions.len() - 1 } else { at - 1 }];
+    if before == here {
+        return DVec3::ZERO;
+    }
+    let mut after = next(at);
+    while positions[after] == here {
+        after = next(after);
+    }
+    normal * angle([before, here, positions[after]], normal)
 }
 
 /// A number that shares few bits with those of its neighbors, so that sums of such numbers seldom are equal.
@@ -324,6 +333,18 @@ mod tests {
         let angles: Vec<f64> = (0..4).map(|at| weighted(&dent, at, normal).length()).collect();
         assert!((angles[1] - 1.5 * std::f64::consts::PI).abs() < 1e-15);
         assert!((angles.iter().sum::<f64>() - std::f64::consts::TAU).abs() < 1e-14, "as in every quadrangle");
+    }
+
+    #[test]
+    fn a_corner_that_stands_twice_counts_once() {
+        // The pole of a ball: quads of which two corners are in one place, whichever two.
+        let [a, b, pole] = [DVec3::NEG_X, DVec3::X, DVec3::Y];
+        let normal = face_normal(&[a, b, pole]);
+        for face in [[a, b, pole, pole], [pole, a, b, pole], [pole, pole, a, b]] {
+            let at_pole = |at: usize| weighted(&face, at, normal).length();
+            let sum: f64 = (0..4).filter(|&at| face[at] == pole).map(at_pole).sum();
+            assert!((sum - std::f64::consts::FRAC_PI_2).abs() < 1e-15, "{face:?}: {sum}");
+        }
     }
 
     #[test]
