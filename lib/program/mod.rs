@@ -31,6 +31,7 @@ mod formulas;
 mod history;
 mod inspect;
 mod output;
+mod palette;
 pub mod picture;
 mod record;
 mod rows;

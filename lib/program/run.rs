@@ -17,7 +17,7 @@ use super::output::{Destination, note, say};
 use super::picture::{Zoom, difference, side_by_side, zoomed};
 use super::record::{Pixel, Recorder};
 use super::steps::Steps;
-use crate::files::{FileError, load_texture};
+use crate::files::{FileError, load_texture, shown};
 use crate::model::{Model, NormalStyle};
 use crate::probe::Listener;
 use crate::texture::Texture;
@@ -189,7 +189,7 @@ impl Given {
             warnings.extend(more);
             if request.texture.is_some() && !loaded.has_texture_coordinates() {
                 let odd = "has no texture coordinates: one texel covers all of it";
-                warnings.push(format!("{}: {odd}", path.display()));
+                warnings.push(shown(&format!("{}: {odd}", path.display())));
             }
             model = Some(if request.as_is { loaded } else { loaded.fitted(PLACE.0, PLACE.1) });
         }
