@@ -12,10 +12,12 @@
 mod decode;
 mod orientation;
 
+use std::error::Error;
 use std::fmt;
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use image::ImageFormat;
 
@@ -33,11 +35,17 @@ pub const MAX_TEXELS: u64 = 1 << 26;
 pub struct FileError {
     path: PathBuf,
     cause: String,
+    source: Option<Arc<dyn Error + Send + Sync>>,
 }
 
 impl FileError {
     pub(crate) fn new(path: &Path, cause: impl fmt::Display) -> Self {
-        Self { path: path.to_owned(), cause: cause.to_string() }
+        Self { path: path.to_owned(), cause: cause.to_string(), source: None }
+    }
+
+    /// The cause is an error of another layer, which is kept.
+    pub(crate) fn from_source(path: &Path, source: impl Error + Send + Sync + 'static) -> Self {
+        Self { path: path.to_owned(), cause: source.to_string(), source: Some(Arc::new(source)) }
     }
 }
 
@@ -47,7 +55,11 @@ impl fmt::Display for FileError {
     }
 }
 
-impl std::error::Error for FileError {}
+impl Error for FileError {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        self.source.as_deref().map(|source| source as &(dyn Error + 'static))
+    }
+}
 
 /// What is odd about a file that can be used all the same.
 pub type Warnings = Vec<String>;
@@ -70,7 +82,7 @@ pub(crate) fn shown(text: &str) -> String {
 /// The bytes of a file: the one door for all that is read. A folder, a pipe and a device are refused, and so is a file
 /// larger than [`MAX_FILE_BYTES`], before it is read.
 pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>, FileError> {
-    let failure = |error| FileError::new(path, error);
+    let failure = |error| FileError::from_source(path, error);
     let metadata = std::fs::metadata(path).map_err(failure)?;
     if !metadata.is_file() {
         let what = if metadata.is_dir() { "is a folder" } else { "is no regular file: a pipe or a device" };

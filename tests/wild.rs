@@ -342,6 +342,41 @@ fn warnings_are_limited() {
     assert!(said.lines().count() == 21 && said.ends_with("and 980 more of this kind\n"), "{said}");
 }
 
+#[test]
+fn the_last_column_begins_anew_by_scanlines_alone() {
+    // Its vertices are on whole pixels: columns 16 to 48 of 65, rows 12 to 36 of 49.
+    let square = "v -1.6 -1.2 -4\nv 1.6 -1.2 -4\nv 1.6 1.2 -4\nv -1.6 1.2 -4\n";
+    let folder = folder("u is 1");
+    write(&folder, &[("a.obj", format!("{square}{CORNERS}{TEXTURED}").as_bytes()), ("a.png", &four())]);
+    let program = |arguments: &[&str]| {
+        let given =
+            ["--frame", "315", "--size", "65x49", "--model", "a.obj", "--texture", "a.png", "--as-is"];
+        let output = Command::new(env!("CARGO_BIN_EXE_ch10_matrices_lighting"))
+            .arg("lit")
+            .args(given)
+            .args(arguments)
+            .current_dir(&folder)
+            .output()
+            .expect("the program starts");
+        assert!(output.status.success(), "{}", stderr(&output));
+        String::from_utf8(output.stdout).expect("text")
+    };
+    let color = |rasterizer: &str, column: u32| {
+        program(&["--out", "picture.png", "--rasterizer", rasterizer]);
+        let picture = image::open(folder.join("picture.png")).expect("drawn").to_rgb8();
+        picture[(column, 48 - 28)].0.map(|channel| channel > 0)
+    };
+    let [blue, yellow] = [[false, false, true], [true, true, false]];
+    assert_eq!([color("scanline", 47), color("scanline", 48)], [yellow, blue], "u is 1 in column 48");
+    assert_eq!(color("edge", 47), yellow, "the last column: its center has a smaller u");
+    // The pixel says so.
+    let history = |column: u32| {
+        let pixel = format!("{column},28");
+        program(&["--inspect", &pixel, "--rasterizer", "scanline"])
+    };
+    assert!(history(48).contains("begins anew") && !history(47).contains("begins anew"), "{}", history(48));
+}
+
 /// A photograph of 16×8 pixels: red on the left, blue on the right.
 const JPEG: &str = "/9j/4AAQSkZJRgABAQAAAQABAAD/2wBDAAMCAgMCAgMDAwMEAwMEBQgFBQQEBQoHBwYIDAoMDAsKCwsNDhIQDQ4RDgsLEBYQERMUFRUVDA8XGBYUGBIUFRT/2wBDAQMEBAUEBQkFBQkUDQsNFBQUFBQUFBQUFBQUFBQUFBQUFBQUFBQUFBQUFBQUFBQUFBQUFBQUFBQUFBQUFBQUFBT/wAARCAAIABADAREAAhEBAxEB/8QAFQABAQAAAAAAAAAAAAAAAAAABwj/xAAUEAEAAAAAAAAAAAAAAAAAAAAA/8QAFQEBAQAAAAAAAAAAAAAAAAAACQf/xAAUEQEAAAAAAAAAAAAAAAAAAAAA/9oADAMBAAIRAxEAPwCdEMKmAjjB0f/Z";
 

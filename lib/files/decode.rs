@@ -6,6 +6,7 @@ use std::path::Path;
 use image::metadata::Orientation;
 use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, Rgb, RgbImage, Rgba};
 use zune_jpeg::JpegDecoder;
+use zune_jpeg::errors::DecodeErrors;
 use zune_jpeg::zune_core::bytestream::ZCursor;
 use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
@@ -33,19 +34,24 @@ pub(super) fn decode_within(
         .ok()
         .filter(|format| READABLE.contains(format))
         .ok_or_else(|| FileError::new(path, "is no image that can be read here (PNG, BMP, TGA, JPEG)"))?;
-    let judge = |size| check_size(size, bytes.len() as u64, max_texels);
-    let image =
-        if format == ImageFormat::Jpeg { decode_jpeg(bytes, judge) } else { decode(bytes, format, judge) };
-    Ok((texture_of(&image.map_err(|cause| FileError::new(path, cause))?), format))
+    let judge =
+        |size| check_size(size, bytes.len() as u64, max_texels).map_err(|cause| FileError::new(path, cause));
+    let image = if format == ImageFormat::Jpeg {
+        decode_jpeg(bytes, path, judge)
+    } else {
+        decode(bytes, format, path, judge)
+    };
+    Ok((texture_of(&image?), format))
 }
 
 /// Decodes PNG, BMP, TGA and PNM files, if `judge` lets their size pass, and turns them as they say.
 fn decode(
     bytes: &[u8],
     format: ImageFormat,
-    judge: impl Fn((u32, u32)) -> Result<(), String>,
-) -> Result<DynamicImage, String> {
-    let failure = |error: ImageError| error.to_string();
+    path: &Path,
+    judge: impl Fn((u32, u32)) -> Result<(), FileError>,
+) -> Result<DynamicImage, FileError> {
+    let failure = |error: ImageError| FileError::from_source(path, error);
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     reader.limits(limits());
     let decoder = reader.into_decoder().map_err(failure)?;
@@ -63,8 +69,11 @@ fn decode(
 /// Decodes JPEG files, and turns them upright by the orientation that a camera left in them (EXIF).
 fn decode_jpeg(
     bytes: &[u8],
-    judge: impl Fn((u32, u32)) -> Result<(), String>,
-) -> Result<DynamicImage, String> {
+    path: &Path,
+    judge: impl Fn((u32, u32)) -> Result<(), FileError>,
+) -> Result<DynamicImage, FileError> {
+    let failure = |error: DecodeErrors| FileError::from_source(path, error);
+    let damaged = |cause: &str| FileError::new(path, cause);
     let side = Framebuffer::MAX_SIDE as usize;
     let options = DecoderOptions::default()
         .jpeg_set_out_colorspace(ColorSpace::RGB)
@@ -72,12 +81,12 @@ fn decode_jpeg(
         .set_max_width(side)
         .set_max_height(side);
     let mut decoder = JpegDecoder::new_with_options(ZCursor::new(bytes), options);
-    decoder.decode_headers().map_err(|error| error.to_string())?;
-    let (width, height) = decoder.dimensions().ok_or("has no size")?;
+    decoder.decode_headers().map_err(failure)?;
+    let (width, height) = decoder.dimensions().ok_or_else(|| damaged("has no size"))?;
     let size = (width as u32, height as u32);
     judge(size)?;
-    let pixels = decoder.decode().map_err(|error| error.to_string())?;
-    let image = RgbImage::from_raw(size.0, size.1, pixels).ok_or("has too few pixels")?;
+    let pixels = decoder.decode().map_err(failure)?;
+    let image = RgbImage::from_raw(size.0, size.1, pixels).ok_or_else(|| damaged("has too few pixels"))?;
     let mut image = DynamicImage::from(image);
     image.apply_orientation(decoder.exif().map_or(Orientation::NoTransforms, |exif| of_exif(exif)));
     Ok(image)

@@ -197,8 +197,11 @@ fn how_to_draw(chapter: &Chapter) -> [Arg; 6] {
         option("frame", "N", "Draw one frame of an animation [default: 0]")
             .value_parser(value_parser!(u32))
             .conflicts_with("all"),
-        switch("animate", "Draw all frames of an animation into one file")
-            .conflicts_with_all(["all", "frame", "compare"]),
+        switch(
+            "animate",
+            "Draw all frames of an animation into one file: GIF, 256 colors a frame, or PNG, which keeps all",
+        )
+        .conflicts_with_all(["all", "frame", "compare"]),
         option("zoom", "N[@X,Y]", zoom).value_parser(parse_zoom),
         option(
             "compare",

@@ -192,6 +192,7 @@ fn triangle_hits(triangle: &FilledTriangle, pixel: Pixel, window: Rect) -> Vec<V
         let mut fields = screen_fields(triangle, hit, pixel);
         if triangle.w.is_some() {
             fields.extend(parameters(triangle, hit));
+            fields.extend(end_of_row(hit));
             fields.push(projected_values(triangle, hit));
             let limit = if triangle.walk.limit == StepLimit::Everywhere {
                 StepLimit::Everywhere
@@ -272,6 +273,13 @@ fn parameters(triangle: &FilledTriangle, hit: &Hit) -> [Field; 3] {
         field("interpolation", "", Value::Text(name.to_owned())),
         field("", "formula", Value::Text(format!("{formula}; a, b: ends of the row"))),
     ]
+}
+
+/// What is to be known where t′ reaches the end of a row: only the book's scanlines do.
+fn end_of_row(hit: &Hit) -> Option<Field> {
+    let text = "t′ reaches or passes 1, the end of the row: a texture coordinate that ends at 1 there begins anew with the \
+                address mode Repeat, and shows the first texel. Clamp, and the exact rasterizer, keep the last one";
+    (hit.along >= 1.0).then(|| field("end_of_row", "note", Value::Text(text.to_owned())))
 }
 
 /// ω and all values: at the corners, at both ends of the row, and at the pixel in both ways.
