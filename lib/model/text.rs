@@ -311,11 +311,12 @@ impl<'a, F: FnMut(u64, u64)> PlainText<'a, F> {
         }
         self.begin_object(common, earlier)?;
         self.plain.push(b'f');
-        for corner in words(corners) {
+        if any == common {
             self.plain.push(b' ');
-            if any == common {
-                self.plain.extend_from_slice(corner);
-            } else {
+            self.plain.extend_from_slice(corners);
+        } else {
+            for corner in words(corners) {
+                self.plain.push(b' ');
                 self.plain.extend_from_slice(&with_less(corner, common));
             }
         }
@@ -364,46 +365,62 @@ impl<'a, F: FnMut(u64, u64)> PlainText<'a, F> {
     #[inline]
     fn check_corner(&mut self, corner: &[u8]) -> Result<Given, String> {
         let mut has = [false; 3];
-        for (place, digits) in corner.split(|&byte| byte == b'/').enumerate() {
-            let Some(&list) = List::ALL.get(place) else {
-                return Err(format!("'{}' has more than three indices", readable(corner)));
-            };
-            if digits.is_empty() {
-                continue;
+        let mut rest = corner;
+        for list in List::ALL {
+            let index;
+            (index, rest) = index_of(rest).ok_or_else(|| format!("'{}' is no index", readable(corner)))?;
+            if let Some(index) = index {
+                has[list as usize] = true;
+                self.check_index(list, index)?;
             }
-            has[place] = true;
-            let index = index_of(digits).ok_or_else(|| format!("'{}' is no index", readable(digits)))?;
-            let count = self.counts[place];
-            if index == 0 || -index > count {
-                return Err(self.out_of_bounds(list, index));
-            }
-            if index > count && index > self.ahead[place].index {
-                self.ahead[place] = Ahead { index, line: self.line };
+            match rest {
+                [] => break,
+                [_, after @ ..] => rest = after,
             }
         }
-        let [has_position, uvs, normals] = has;
-        if !has_position {
-            return Err(format!("'{}' names no vertex", readable(corner)));
+        match has {
+            _ if !rest.is_empty() => Err(format!("'{}' has more than three indices", readable(corner))),
+            [true, uvs, normals] => Ok(Given { uvs, normals }),
+            _ => Err(format!("'{}' names no vertex", readable(corner))),
         }
-        Ok(Given { uvs, normals })
+    }
+
+    #[inline]
+    fn check_index(&mut self, list: List, index: i64) -> Result<(), String> {
+        let count = self.counts[list as usize];
+        if index == 0 || -index > count {
+            return Err(self.out_of_bounds(list, index));
+        }
+        let ahead = &mut self.ahead[list as usize];
+        if index > count && index > ahead.index {
+            *ahead = Ahead { index, line: self.line };
+        }
+        Ok(())
     }
 }
 
-/// A whole number; none if there is something else, or one that no file can have so many lines for.
+/// The whole number before a `/` or the end, if there is one, and what follows it; nothing if there is something else, or a
+/// number that no file can have so many lines for.
 #[inline]
-fn index_of(digits: &[u8]) -> Option<i64> {
-    let (sign, digits) = match digits {
-        [b'-', rest @ ..] => (-1, rest),
-        [b'+', rest @ ..] => (1, rest),
-        _ => (1, digits),
+fn index_of(text: &[u8]) -> Option<(Option<i64>, &[u8])> {
+    let (is_negative, signed) = match text {
+        [b'-', rest @ ..] => (true, rest),
+        [b'+', rest @ ..] => (false, rest),
+        _ => (false, text),
     };
-    if digits.is_empty() || digits.len() > 18 {
-        return None;
+    let mut value = 0;
+    let mut length = 0;
+    for &byte in signed {
+        match byte {
+            b'0'..=b'9' if length < 18 => value = value * 10 + i64::from(byte - b'0'),
+            b'/' => break,
+            _ => return None,
+        }
+        length += 1;
     }
-    let value = digits.iter().try_fold(0_i64, |value, &digit| {
-        digit.is_ascii_digit().then(|| value * 10 + i64::from(digit - b'0'))
-    });
-    value.map(|value| sign * value)
+    let is_sign_alone = length == 0 && signed.len() < text.len();
+    let number = (length > 0).then_some(if is_negative { -value } else { value });
+    (!is_sign_alone).then_some((number, &signed[length..]))
 }
 
 /// Whether this can be a finite number. Whether it is one, the parser sees.
