@@ -82,6 +82,11 @@ pub(crate) fn shown(text: &str) -> String {
 /// The bytes of a file: the one door for all that is read. A folder, a pipe and a device are refused, and so is a file
 /// larger than [`MAX_FILE_BYTES`], before it is read.
 pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>, FileError> {
+    read_file_within(path, MAX_FILE_BYTES)
+}
+
+/// As [`read_file`], with no more than `limit` bytes.
+pub(crate) fn read_file_within(path: &Path, limit: u64) -> Result<Vec<u8>, FileError> {
     let failure = |error| FileError::from_source(path, error);
     let metadata = std::fs::metadata(path).map_err(failure)?;
     if !metadata.is_file() {
@@ -89,22 +94,18 @@ pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>, FileError> {
         return Err(FileError::new(path, what));
     }
     let too_large = |size| {
-        let limit = MAX_FILE_BYTES >> 20;
-        FileError::new(
-            path,
-            format!("has {size} bytes; files of up to {MAX_FILE_BYTES} ({limit} MiB) are read"),
-        )
+        let most = format!("files of up to {MAX_FILE_BYTES} ({} MiB) are read", MAX_FILE_BYTES >> 20);
+        let left = if limit < MAX_FILE_BYTES { format!(", and {limit} are left") } else { String::new() };
+        FileError::new(path, format!("has {size} bytes; {most}{left}"))
     };
-    if metadata.len() > MAX_FILE_BYTES {
+    if metadata.len() > limit {
         return Err(too_large(metadata.len().to_string()));
     }
     let mut bytes = Vec::with_capacity(metadata.len() as usize);
     // It may grow while it is read.
-    File::open(path)
-        .and_then(|file| file.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes))
-        .map_err(failure)?;
-    if bytes.len() as u64 > MAX_FILE_BYTES {
-        return Err(too_large(format!("more than {MAX_FILE_BYTES}")));
+    File::open(path).and_then(|file| file.take(limit + 1).read_to_end(&mut bytes)).map_err(failure)?;
+    if bytes.len() as u64 > limit {
+        return Err(too_large(format!("more than {limit}")));
     }
     Ok(bytes)
 }

@@ -3,14 +3,19 @@
 //! As with OBJ text, each statement is read once and made plain; one that cannot be used costs its line, not the library.
 //! The color of a material (`Kd`) tints its texture (`map_Kd`): both are factors of what is seen.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
+use super::MAX_WARNINGS;
 use super::statements::{Statements, keyword, name_without_comment, readable, without_comment, words};
 use super::text::Count;
 use crate::Color;
-use crate::files::{FileError, MAX_TEXELS, Warnings, load_texture_within, read_file};
+use crate::files::{FileError, MAX_FILE_BYTES, MAX_TEXELS, Warnings, load_texture_within, read_file_within};
 use crate::texture::Texture;
+
+/// The most libraries of a model, and the most materials of a library, that are read.
+const MAX_LIBRARIES: usize = 256;
+const MAX_MATERIALS: usize = 1 << 16;
 
 /// A material of a library.
 struct Material {
@@ -40,21 +45,30 @@ impl Materials {
         let (libraries, list, by_name) = (Vec::new(), Vec::new(), HashMap::new());
         let mut materials =
             Self { model: model.to_owned(), libraries, list, by_name, pictures: Pictures::default() };
-        let mut named = Vec::new();
-        let mut known = std::collections::HashSet::new();
+        let mut known = HashSet::new();
+        let mut left = MAX_FILE_BYTES;
         for (line, names) in statements {
+            if known.len() >= MAX_LIBRARIES {
+                warnings.push(format!("{}: line {line}: more libraries than are read", model.display()));
+                break;
+            }
             if names.is_empty() {
                 warnings.push(format!("{}: line {line}: mtllib without a name", model.display()));
             }
-            let files = library_names(folder_of(model), names).into_iter().map(|path| (*line, path));
-            named.extend(files.filter(|(_, path)| known.insert(path.clone())));
-        }
-        for (line, path) in named {
-            match read_file(&path) {
-                Ok(text) => materials.add_library(&path, &text, warnings),
-                Err(error) => {
-                    let place = format!("{}: line {line}", model.display());
-                    warnings.push(format!("{place}: a material library cannot be used: {error}"));
+            for path in library_names(folder_of(model), names).into_iter().take(MAX_LIBRARIES) {
+                // The same file under another name is the same file.
+                if !known.insert(path.canonicalize().unwrap_or_else(|_| path.clone())) {
+                    continue;
+                }
+                match read_file_within(&path, left) {
+                    Ok(text) => {
+                        left -= text.len() as u64;
+                        materials.add_library(&path, &text, warnings);
+                    }
+                    Err(error) => {
+                        let place = format!("{}: line {line}", model.display());
+                        warnings.push(format!("{place}: a material library cannot be used: {error}"));
+                    }
                 }
             }
         }
@@ -280,16 +294,20 @@ struct PlainLibrary {
     maps: Vec<Vec<u8>>,
     warnings: Warnings,
     orphans: Count,
+    is_full: bool,
 }
 
 impl PlainLibrary {
     fn new(library: usize) -> Self {
         let (plain, materials, maps, warnings) = Default::default();
-        Self { library, plain, materials, maps, warnings, orphans: Count::default() }
+        Self { library, plain, materials, maps, warnings, orphans: Count::default(), is_full: false }
     }
 
     fn take(&mut self, line: u32, statement: &[u8]) {
         let (word, rest) = keyword(statement);
+        if self.is_full {
+            return;
+        }
         if word == b"newmtl" {
             return self.begin(line, rest);
         }
@@ -305,13 +323,24 @@ impl PlainLibrary {
             Ok(())
         };
         if let Err(cause) = done {
-            self.warnings.push(format!("line {line}: {cause}: left out"));
+            self.warn(line, &format!("{cause}: left out"));
+        }
+    }
+
+    fn warn(&mut self, line: u32, warning: &str) {
+        // There may be one for each line of a large file.
+        if self.warnings.len() < 2 * MAX_WARNINGS {
+            self.warnings.push(format!("line {line}: {warning}"));
         }
     }
 
     fn begin(&mut self, line: u32, name: &[u8]) {
+        if self.materials.len() == MAX_MATERIALS {
+            self.is_full = true;
+            return self.warn(line, &format!("more than {MAX_MATERIALS} materials: the others are left out"));
+        }
         if name.is_empty() {
-            self.warnings.push(format!("line {line}: newmtl without a name: it cannot be used"));
+            self.warn(line, "newmtl without a name: it cannot be used");
         }
         self.plain += &format!("newmtl {}\n", self.materials.len());
         let (name, library, not_drawn) = (name.to_vec(), self.library, Vec::new());
@@ -337,8 +366,8 @@ impl PlainLibrary {
         let changes: Vec<String> =
             options.into_iter().filter(|option| !option.is_neutral()).map(|o| o.show()).collect();
         if !changes.is_empty() {
-            self.warnings
-                .push(format!("line {line}: options of map_Kd that are not drawn: {}", changes.join(", ")));
+            let options = changes.join(", ");
+            self.warn(line, &format!("options of map_Kd that are not drawn: {options}"));
         }
         if name.is_empty() || name.starts_with(b"#") {
             return Err("map_Kd without the name of a file".to_owned());
@@ -482,6 +511,14 @@ mod tests {
         }
         let (_, warnings) = library("Kd 1 1 1\nnewmtl\nd 1\nTr 0\nillum\n");
         assert_eq!(warnings.len(), 2, "{warnings:?}");
+    }
+
+    #[test]
+    fn a_library_has_a_largest_size() {
+        let (materials, warnings) = library(&"newmtl a\nKd\n".repeat(MAX_MATERIALS + 2));
+        assert_eq!((materials.len(), warnings.len()), (MAX_MATERIALS, 2 * MAX_WARNINGS));
+        let (materials, warnings) = library(&"newmtl a\n".repeat(MAX_MATERIALS + 2));
+        assert_eq!((materials.len(), warnings.len()), (MAX_MATERIALS, 1));
     }
 
     #[test]

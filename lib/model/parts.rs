@@ -32,8 +32,8 @@ pub(super) struct Parts {
     work: u64,
     polygon_lines: std::vec::IntoIter<u32>,
     odd_polygons: Count,
-    /// Triangles without texture coordinates that have a texture of more than one texel.
-    bare: u32,
+    /// Whether faces without texture coordinates have a texture of more than one texel.
+    has_bare: bool,
 }
 
 impl Parts {
@@ -54,7 +54,7 @@ impl Parts {
             work: MAX_WORK,
             polygon_lines: found.polygon_lines.clone().into_iter(),
             odd_polygons: Count::default(),
-            bare: 0,
+            has_bare: false,
         }
     }
 
@@ -66,18 +66,17 @@ impl Parts {
         }
         if !object.given.uvs && texture.as_ref().is_some_and(|texture| texture.width() * texture.height() > 1)
         {
-            self.bare += 1;
+            self.has_bare = true;
         }
         self.current = Some((object, texture));
         let source = Source::new(mesh, object);
         let mut known = Known::new(source.positions.len());
         let (mut start, mut triangles, mut corners) = (0, Vec::new(), Vec::new());
         for count in arities(mesh) {
-            let face = Face { start, number: self.face, normal: DVec3::ZERO };
             corners.clear();
             corners.extend(mesh.indices[start..start + count].iter().map(|&i| source.positions[i as usize]));
             let normal = if self.style == NormalStyle::Flat { face_normal(&corners) } else { DVec3::ZERO };
-            let face = Face { normal, ..face };
+            let face = Face { start, number: self.face, normal };
             self.cut(&corners, &mut triangles);
             for corner in triangles.iter().flatten() {
                 let vertex = self.vertex(&source, face, *corner);
@@ -141,7 +140,7 @@ impl Parts {
             "polygons that cross themselves or have no area are cut as if they were convex",
         );
         let mut warnings: Warnings = odd.into_iter().collect();
-        if self.bare > 0 {
+        if self.has_bare {
             warnings.push(
                 "some faces with a texture have no texture coordinates: one texel covers them".to_owned(),
             );

@@ -18,6 +18,14 @@ use std::io::{BufRead, Error, Read, Result as IoResult};
 use super::statements::{Statements, keyword, readable, without_comment, words};
 use crate::files::Warnings;
 
+/// How large a model may be: so many vertices, texture coordinates, normals and corners of faces together. An object, the
+/// name of a material and the name of a library need more memory, and count as [`LARGE`] of them.
+pub(super) const MAX_ELEMENTS: u32 = 1 << 23;
+const LARGE: u32 = 32;
+
+/// The most bytes of names after one `mtllib`.
+const MAX_NAMES: usize = 1 << 16;
+
 /// What the corners of a face have beside a position. A face of which one corner lacks something has it in none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Given {
@@ -145,6 +153,8 @@ pub(super) struct PlainText<'a, F> {
     line: u32,
     fault: Option<String>,
     counts: [i64; 3],
+    /// How many of [`MAX_ELEMENTS`] are left.
+    left: u32,
     /// The highest index of each list that stands before its element. An element may follow its face, as long as the
     /// object lasts.
     ahead: [Ahead; 3],
@@ -166,6 +176,7 @@ impl<'a, F: FnMut(u64, u64)> PlainText<'a, F> {
             line: 0,
             fault: None,
             counts: [0; 3],
+            left: MAX_ELEMENTS,
             ahead: [Ahead::default(); 3],
             object: 0,
             material: None,
@@ -209,19 +220,31 @@ impl<'a, F: FnMut(u64, u64)> PlainText<'a, F> {
             b"vt" => self.element(List::Uvs, b"vt", without_comment(rest)),
             b"vn" => self.element(List::Normals, b"vn", without_comment(rest)),
             b"f" | b"fo" => self.face(without_comment(rest)),
+            b"usemtl" => self.use_material(rest),
+            b"mtllib" if rest.len() > MAX_NAMES => Err("the names after mtllib are too long".to_owned()),
+            b"mtllib" => {
+                self.found.libraries.push((self.line, rest.to_vec()));
+                self.spend(LARGE)
+            }
             _ => {
-                self.take_rare(word, rest);
+                self.take_rare(word);
                 Ok(())
             }
         }
     }
 
-    /// What is neither a vertex nor a face.
-    fn take_rare(&mut self, word: &[u8], rest: &[u8]) {
+    /// Takes elements from those that are left.
+    fn spend(&mut self, elements: u32) -> Result<(), String> {
+        let left = self.left.checked_sub(elements);
+        self.left =
+            left.ok_or_else(|| format!("the model is too large: more than {MAX_ELEMENTS} elements"))?;
+        Ok(())
+    }
+
+    /// What is neither drawn nor a name.
+    fn take_rare(&mut self, word: &[u8]) {
         match word {
             b"o" | b"g" => self.object = self.object.saturating_add(1),
-            b"usemtl" => self.use_material(rest),
-            b"mtllib" => self.found.libraries.push((self.line, rest.to_vec())),
             b"l" | b"p" => self.found.lines_and_points.add(self.line),
             b"curv" | b"curv2" | b"surf" => self.found.free_form.add(self.line),
             // What belongs to free-form elements, and what says how something is to be shown.
@@ -237,19 +260,18 @@ impl<'a, F: FnMut(u64, u64)> PlainText<'a, F> {
         }
     }
 
-    fn use_material(&mut self, name: &[u8]) {
+    fn use_material(&mut self, name: &[u8]) -> Result<(), String> {
+        self.material = self.known_materials.get(name).copied();
         if name.is_empty() {
             self.found.nameless.add(self.line);
-            self.material = None;
-            return;
-        }
-        let known = self.known_materials.get(name).copied();
-        self.material = Some(known.unwrap_or_else(|| {
+        } else if self.material.is_none() {
             let next = self.found.materials.len();
             self.found.materials.push(name.to_vec());
             self.known_materials.insert(name.to_vec(), next);
-            next
-        }));
+            self.material = Some(next);
+            self.spend(LARGE)?;
+        }
+        Ok(())
     }
 
     /// `v x y z`, then perhaps a weight, or a color, or more.
@@ -291,13 +313,14 @@ impl<'a, F: FnMut(u64, u64)> PlainText<'a, F> {
         }
         self.plain.push(b'\n');
         self.counts[list as usize] += 1;
-        Ok(())
+        self.spend(1)
     }
 
     fn face(&mut self, corners: &[u8]) -> Result<(), String> {
         let mut common = Given { uvs: true, normals: true };
         let mut any = Given { uvs: false, normals: false };
         let mut count = 0_u32;
+        // No file that is read has more corners than this can count.
         let earlier = std::mem::take(&mut self.ahead);
         for corner in words(corners) {
             let given = self.check_corner(corner)?;
@@ -309,6 +332,7 @@ impl<'a, F: FnMut(u64, u64)> PlainText<'a, F> {
             self.found.short_faces.add(self.line);
             return Ok(());
         }
+        self.spend(count)?;
         self.begin_object(common, earlier)?;
         self.plain.push(b'f');
         if any == common {
@@ -339,7 +363,7 @@ impl<'a, F: FnMut(u64, u64)> PlainText<'a, F> {
         self.check_ahead(earlier)?;
         self.plain.extend_from_slice(format!("o {}\n", self.found.objects.len()).as_bytes());
         self.found.objects.push(object);
-        Ok(())
+        self.spend(LARGE)
     }
 
     /// Whether the elements that faces named before they were there have come.
@@ -496,7 +520,11 @@ mod tests {
     use super::*;
 
     fn plain(text: &str) -> Result<(String, Found), String> {
-        let mut reader = PlainText::new(text.as_bytes(), |_, _| {});
+        plain_within(text, MAX_ELEMENTS)
+    }
+
+    fn plain_within(text: &str, left: u32) -> Result<(String, Found), String> {
+        let mut reader = PlainText { left, ..PlainText::new(text.as_bytes(), |_, _| {}) };
         let mut plain = String::new();
         let read = reader.read_to_string(&mut plain).map_err(|_| tobj::LoadError::ReadError);
         reader.finish(read).map(|(_, found)| (plain, found))
@@ -553,6 +581,21 @@ mod tests {
         }
         assert!(fault("f 1 2 4\nv 0 0 0\nv 0 0 0\nv 0 0 0\n").starts_with("line 1: vertex 4"));
         assert!(plain("f 1 2 3\nv 0 0 0\nv 0 0 0\nv 0 0 0\n").is_ok(), "vertices may follow their face");
+    }
+
+    #[test]
+    fn a_model_has_a_largest_size() {
+        let left = |text: &str, needed: u32| {
+            assert!(plain_within(text, needed).is_ok(), "{needed}");
+            let fault = plain_within(text, needed - 1).expect_err("too large");
+            assert!(fault.contains("more than 8388608 elements"), "{fault}");
+        };
+        left(&format!("{CORNERS}f 1 2 3 1 2 3\n"), 3 + LARGE + 6);
+        left("vt 0\nvn 0 0 1\n", 2);
+        left(&format!("{CORNERS}f 1 2 3\ng\nf 1 2 3\n"), 3 + 2 * (LARGE + 3));
+        left("usemtl a\nusemtl b\nusemtl a\nmtllib c\n", 3 * LARGE);
+        let names = format!("mtllib{}", " a".repeat(MAX_NAMES));
+        assert!(plain(&names).expect_err("too long").starts_with("line 1: the names after mtllib"));
     }
 
     #[test]
