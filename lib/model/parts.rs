@@ -136,8 +136,8 @@ impl Parts {
             return Err(error);
         }
         let odd = self.odd_polygons.warning(
-            "a polygon that crosses itself or has no area is cut as if it were convex",
-            "polygons that cross themselves or have no area are cut as if they were convex",
+            "a polygon that crosses itself, has no area or takes too long is cut as if it were convex",
+            "polygons that cross themselves, have no area or take too long are cut as if they were convex",
         );
         let mut warnings: Warnings = odd.into_iter().collect();
         if self.has_bare {
