@@ -7,7 +7,7 @@
 
 use std::process::ExitCode;
 
-use rasterbook::program::{Chapter, Variant, picture};
+use rasterbook::figure::{Chapter, Variant, picture};
 use rasterbook::{Color, Framebuffer, Rect};
 
 pub(crate) const CHAPTER: Chapter = Chapter {

@@ -8,8 +8,8 @@
 use std::process::ExitCode;
 
 use glam::{DVec2, DVec3, dvec2};
+use rasterbook::figure::{Chapter, Subject, Variant};
 use rasterbook::line::{StepAxis, dda};
-use rasterbook::program::{Chapter, Subject, Variant};
 use rasterbook::{Color, Framebuffer};
 
 pub(crate) const CHAPTER: Chapter = Chapter {
@@ -28,7 +28,7 @@ pub(crate) const CHAPTER: Chapter = Chapter {
         )
         .source("section 2.1, Figure 2-2")
         .size(480, 480)
-        .mended_by("star"),
+        .remedied_by("star"),
         Variant::of_model_in_plane(
             "wireframe",
             wireframe,
@@ -47,7 +47,7 @@ fn line(framebuffer: &mut Framebuffer) {
 
 /// Colors the pixels that the DDA emits.
 fn draw_line(framebuffer: &mut Framebuffer, a: DVec2, b: DVec2, axis: StepAxis, color: Color) {
-    dda(a, b, axis, framebuffer.window(), |x, y| framebuffer.set(x, y, color));
+    dda(a, b, axis, framebuffer.scissor(), |x, y| framebuffer.set(x, y, color));
 }
 // ANCHOR_END: line
 

@@ -1,7 +1,7 @@
 //! # Chapter 3: barycentric interpolation and textures
 //!
 //! **The corners have values: which value has a pixel between them?** The nearer a corner, the more it weighs. Along a
-//! straight line the weights change evenly, so that the scanline walk needs one addition a pixel.
+//! straight line the weights change linearly, so that the scanline walk needs one addition a pixel.
 //!
 //! New here: interpolation (`lib/interpolate.rs`) and textures (`lib/texture.rs`). The walk is that of chapter 2; what
 //! is stepped along with x is new. Book: chapter 3.
@@ -9,10 +9,10 @@
 use std::process::ExitCode;
 
 use glam::dvec2;
-use rasterbook::edge::{Coverage, center};
-use rasterbook::interpolate::step_values;
-use rasterbook::program::{Chapter, Variant, picture};
-use rasterbook::scanline::{Corner, StepLimit, Walk};
+use rasterbook::exact::edge::Coverage;
+use rasterbook::figure::{Chapter, Variant, picture};
+use rasterbook::interpolate::{ScreenVertex, step_values};
+use rasterbook::scanline::{StepLimit, Walk};
 use rasterbook::texture::{AddressMode, Texture};
 use rasterbook::{Color, Framebuffer};
 
@@ -28,49 +28,49 @@ pub(crate) const CHAPTER: Chapter = Chapter {
             .source("section 3.2.2, Figures 3-6 and 3-7"),
         Variant::new("spikes", spikes, "orange: values out of the range of the corners, at the tips (past the end of an edge) and at the ends of rows")
             .source("section 11.4")
-            .mended_by("limited"),
-        Variant::new("limited-edges", limited_edges, "the same, limited along the edges as in the book: the tips are mended, the ends of rows are not")
+            .remedied_by("limited"),
+        Variant::new("limited-edges", limited_edges, "the same, limited along the edges as in the book: the tips are right, the ends of rows are not")
             .source("section 11.4"),
         Variant::new("limited", limited, "the same, limited along the rows too: no orange pixel is left"),
     ],
 };
 
-/// A corner on the screen with its values.
-fn corner<const N: usize>(x: f64, y: f64, values: [f64; N]) -> Corner<[f64; N]> {
-    Corner { position: dvec2(x, y), attributes: values }
+/// A vertex on the screen with its values.
+fn vertex<const N: usize>(x: f64, y: f64, values: [f64; N]) -> ScreenVertex<[f64; N]> {
+    ScreenVertex { position: dvec2(x, y), varyings: values }
 }
 
 // ANCHOR: gray
-/// One value a corner, drawn as gray.
+/// One value a vertex, drawn as gray.
 fn gray(framebuffer: &mut Framebuffer) {
-    let corners = [corner(100.0, 0.0, [0.0]), corner(0.0, 100.0, [255.0]), corner(100.0, 200.0, [0.0])];
-    step_values(corners, Walk::default(), framebuffer.window(), |x, y, [value]| {
+    let triangle = [vertex(100.0, 0.0, [0.0]), vertex(0.0, 100.0, [255.0]), vertex(100.0, 200.0, [0.0])];
+    step_values(triangle, Walk::default(), framebuffer.scissor(), |x, y, [value]| {
         framebuffer.set(x, y, Color::truncated([value; 3]));
     });
 }
 // ANCHOR_END: gray
 
 // ANCHOR: rgb
-/// Three values a corner, drawn as a color.
+/// Three values a vertex, drawn as a color.
 fn rgb(framebuffer: &mut Framebuffer) {
-    let corners = [
-        corner(0.0, 0.0, [255.0, 0.0, 0.0]),
-        corner(240.0, 240.0, [0.0, 255.0, 0.0]),
-        corner(0.0, 480.0, [0.0, 0.0, 255.0]),
+    let triangle = [
+        vertex(0.0, 0.0, [255.0, 0.0, 0.0]),
+        vertex(240.0, 240.0, [0.0, 255.0, 0.0]),
+        vertex(0.0, 480.0, [0.0, 0.0, 255.0]),
     ];
-    step_values(corners, Walk::default(), framebuffer.window(), |x, y, values| {
+    step_values(triangle, Walk::default(), framebuffer.scissor(), |x, y, values| {
         framebuffer.set(x, y, Color::truncated(values));
     });
 }
 // ANCHOR_END: rgb
 
 // ANCHOR: texture
-/// Two values a corner, drawn as the texel that they point to.
+/// Two values a vertex, drawn as the texel that they point to.
 fn texture(framebuffer: &mut Framebuffer) {
     let texture = Texture::book();
-    let corners =
-        [corner(0.0, 0.0, [0.0, 0.0]), corner(480.0, 0.0, [1.0, 0.0]), corner(0.0, 480.0, [0.0, 1.0])];
-    step_values(corners, Walk::default(), framebuffer.window(), |x, y, uv| {
+    let triangle =
+        [vertex(0.0, 0.0, [0.0, 0.0]), vertex(480.0, 0.0, [1.0, 0.0]), vertex(0.0, 480.0, [0.0, 1.0])];
+    step_values(triangle, Walk::default(), framebuffer.scissor(), |x, y, uv| {
         framebuffer.set(x, y, Color::truncated(texture.nearest(uv, AddressMode::Clamp)));
     });
 }
@@ -82,24 +82,19 @@ fn weights(framebuffer: &mut Framebuffer) {
     // The value of an edge function is twice the area of the small triangle over that edge.
     let coverage =
         Coverage::new([dvec2(70.0, 50.0), dvec2(590.0, 130.0), dvec2(250.0, 440.0)]).expect("area");
-    framebuffer.tell(|probe| probe.coverage(&coverage));
-    for y in framebuffer.rect().rows() {
-        for x in framebuffer.rect().columns() {
-            let areas = coverage.edge_values(center(x, y));
-            let weights = areas.map(|area| area as f64 / coverage.twice_area as f64);
-            let inside = coverage.covers(areas);
-            let on_tenth =
-                weights.iter().any(|&weight| (weight * 10.0 - (weight * 10.0).round()).abs() < 0.025);
-            // Beyond an edge the weight of the opposite corner is negative; dim, so that the triangle stands out.
-            let brightness = if inside == on_tenth {
-                110.0
-            } else if inside {
-                255.0
-            } else {
-                40.0
-            };
-            framebuffer.set(x, y, Color::truncated(weights.map(|weight| weight * brightness)));
-        }
+    for (x, y, areas) in coverage.all_pixels(framebuffer.scissor()) {
+        let weights = areas.map(|area| area as f64 / coverage.twice_area as f64);
+        let inside = coverage.covers(areas);
+        let on_tenth = weights.iter().any(|&weight| (weight * 10.0 - (weight * 10.0).round()).abs() < 0.025);
+        // Beyond an edge the weight of the opposite vertex is negative; dim, so that the triangle stands out.
+        let brightness = if inside == on_tenth {
+            110.0
+        } else if inside {
+            255.0
+        } else {
+            40.0
+        };
+        framebuffer.set(x, y, Color::truncated(weights.map(|weight| weight * brightness)));
     }
 }
 // ANCHOR_END: weights
@@ -120,19 +115,19 @@ fn limited(framebuffer: &mut Framebuffer) {
     confetti(framebuffer, StepLimit::Everywhere);
 }
 
-/// Small triangles on a screen of 80×60 pixels, each at another fraction of a pixel. All corners have values in 0..=1,
+/// Small triangles on a screen of 80×60 pixels, each at another fraction of a pixel. All vertices have values in 0..=1,
 /// drawn as dark to bright blue; a value outside that range is drawn in orange.
 fn confetti(framebuffer: &mut Framebuffer, limit: StepLimit) {
     picture::draw_enlarged(framebuffer, (80, 60), 8, |screen| {
         for (column, row) in (0..6).flat_map(|row| (0..7).map(move |column| (column, row))) {
             let (i, j) = (f64::from(column), f64::from(row));
             let (x, y) = (2.2 + 11.13 * i, 2.6 + 9.41 * j + 0.27 * i);
-            let corners = [
-                corner(x, y, [0.0]),
-                corner(x + 8.4, y + 1.7, [0.0]),
-                corner(x + 1.8 + 0.7 * i, y + 7.6, [1.0]),
+            let triangle = [
+                vertex(x, y, [0.0]),
+                vertex(x + 8.4, y + 1.7, [0.0]),
+                vertex(x + 1.8 + 0.7 * i, y + 7.6, [1.0]),
             ];
-            step_values(corners, Walk { limit, ..Walk::default() }, screen.window(), |x, y, [value]| {
+            step_values(triangle, Walk { limit, ..Walk::default() }, screen.scissor(), |x, y, [value]| {
                 let is_in_range = (-1e-9..=1.0 + 1e-9).contains(&value);
                 let blue =
                     Color::truncated([30.0 + 60.0 * value, 60.0 + 120.0 * value, 110.0 + 140.0 * value]);

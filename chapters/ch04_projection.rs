@@ -9,8 +9,8 @@
 use std::process::ExitCode;
 
 use glam::{DVec2, DVec3, DVec4, dvec2, dvec3};
+use rasterbook::figure::{Chapter, Variant};
 use rasterbook::line::{StepAxis, dda};
-use rasterbook::program::{Chapter, Variant};
 use rasterbook::transform::{orthographic, perspective, perspective_divide};
 use rasterbook::{Color, Framebuffer, Rect};
 
@@ -42,7 +42,7 @@ fn segment(
     color: Color,
 ) {
     let (a, b) = (to_screen(project(a)), to_screen(project(b)));
-    dda(a, b, StepAxis::Longer, framebuffer.window(), |x, y| framebuffer.set(x, y, color));
+    dda(a, b, StepAxis::Longer, framebuffer.scissor(), |x, y| framebuffer.set(x, y, color));
 }
 // ANCHOR_END: to_screen
 

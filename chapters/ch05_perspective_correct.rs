@@ -9,10 +9,10 @@
 use std::process::ExitCode;
 
 use glam::{dvec2, dvec3};
-use rasterbook::edge::Coverage;
-use rasterbook::interpolate::{Interpolation, Projected, step_parameter, step_values};
-use rasterbook::program::{Chapter, Variant};
-use rasterbook::scanline::{Corner, Walk};
+use rasterbook::exact::edge::Coverage;
+use rasterbook::figure::{Chapter, Variant};
+use rasterbook::interpolate::{Interpolation, Projected, ScreenVertex, step_parameter, step_values};
+use rasterbook::scanline::Walk;
 use rasterbook::texture::{AddressMode, Texture};
 use rasterbook::transform::{perspective, perspective_divide};
 use rasterbook::varyings::perspective_weights;
@@ -26,16 +26,16 @@ pub(crate) const CHAPTER: Chapter = Chapter {
             .source("section 5.4, Figure 5-8"),
         Variant::new("affine", affine, "the same square, interpolated on the screen: the line between the colors breaks at the diagonal")
             .source("section 5.3, Figure 5-3")
-            .mended_by("correct"),
+            .remedied_by("correct"),
         Variant::new("facing", facing, "a projected triangle that faces us: chapter 3 is still enough").source("section 5.1, Figure 5-1"),
         Variant::new("square", square, "two triangles make a square that faces us: no seam, no bend").source("section 5.2, Figure 5-2"),
         Variant::new("reciprocal", reciprocal, "the tilted square again, by way of 1/ω and V/ω: compare it with 'correct', not one pixel differs")
             .source("section 5.5.4"),
         Variant::new("barycentric", barycentric, "the tilted square by weights: those of areas on the screen, each divided by its corner's ω")
             .source("first note"),
-        Variant::new("floor", floor, "a checkered floor to the horizon: every line is straight and the squares shrink evenly"),
+        Variant::new("floor", floor, "a checkered floor to the horizon: every line is straight, and the squares shrink towards the horizon"),
         Variant::new("floor-affine", floor_affine, "the same two triangles, interpolated on the screen: the floor folds along the diagonal")
-            .mended_by("floor"),
+            .remedied_by("floor"),
     ],
 };
 
@@ -48,13 +48,16 @@ const TILTED_Z: f64 = 340.0;
 
 // ANCHOR: vertex
 /// Projects a point with its texture coordinates. Screen coordinates are what the divide gives, and ω is kept.
-fn vertex([x, y, z]: [f64; 3], uv: [f64; 2]) -> Corner<Projected<f64, 2>> {
+fn vertex([x, y, z]: [f64; 3], uv: [f64; 2]) -> ScreenVertex<Projected<f64, 2>> {
     let clip = perspective(dvec3(x, y, z), NEAR);
-    Corner { position: perspective_divide(clip).truncate(), attributes: Projected { w: clip.w, values: uv } }
+    ScreenVertex {
+        position: perspective_divide(clip).truncate(),
+        varyings: Projected { w: clip.w, values: uv },
+    }
 }
 // ANCHOR_END: vertex
 
-type Triangle = [Corner<Projected<f64, 2>>; 3];
+type Triangle = [ScreenVertex<Projected<f64, 2>>; 3];
 
 // ANCHOR: square_geometry
 /// A square of two triangles, its left side at z = 100 and its right side at (`x`, `z`).
@@ -70,7 +73,7 @@ fn square_to(x: f64, z: f64) -> [Triangle; 2] {
 fn textured(framebuffer: &mut Framebuffer, triangles: &[Triangle], interpolation: Interpolation) {
     let texture = Texture::book();
     for &triangle in triangles {
-        step_parameter(triangle, interpolation, Walk::default(), framebuffer.window(), |x, y, point| {
+        step_parameter(triangle, interpolation, Walk::default(), framebuffer.scissor(), |x, y, point| {
             framebuffer.set(x, y, Color::truncated(texture.nearest(point.values, AddressMode::Clamp)));
         });
     }
@@ -98,10 +101,10 @@ fn barycentric(framebuffer: &mut Framebuffer) {
     let texture = Texture::book();
     for triangle in square_to(TILTED_X, TILTED_Z) {
         let coverage = Coverage::new(triangle.map(|corner| corner.position)).expect("area");
-        for (x, y, areas) in coverage.pixels(framebuffer.window()) {
+        for (x, y, areas) in coverage.pixels(framebuffer.scissor()) {
             let on_screen = areas.map(|area| area as f64 / coverage.twice_area as f64);
-            let in_space = perspective_weights(on_screen, triangle.map(|corner| corner.attributes.w));
-            let uv = [0, 1].map(|k| (0..3).map(|i| in_space[i] * triangle[i].attributes.values[k]).sum());
+            let in_space = perspective_weights(on_screen, triangle.map(|vertex| vertex.varyings.w));
+            let uv = [0, 1].map(|k| (0..3).map(|i| in_space[i] * triangle[i].varyings.values[k]).sum());
             framebuffer.set(x, y, Color::truncated(texture.nearest::<f64>(uv, AddressMode::Clamp)));
         }
     }
@@ -113,9 +116,9 @@ fn barycentric(framebuffer: &mut Framebuffer) {
 fn textured_as_before(framebuffer: &mut Framebuffer, triangles: &[Triangle]) {
     let texture = Texture::book();
     for triangle in triangles {
-        let corners =
-            triangle.map(|corner| Corner { position: corner.position, attributes: corner.attributes.values });
-        step_values(corners, Walk::default(), framebuffer.window(), |x, y, uv| {
+        let triangle = triangle
+            .map(|vertex| ScreenVertex { position: vertex.position, varyings: vertex.varyings.values });
+        step_values(triangle, Walk::default(), framebuffer.scissor(), |x, y, uv| {
             framebuffer.set(x, y, Color::truncated(texture.nearest(uv, AddressMode::Clamp)));
         });
     }
@@ -142,14 +145,14 @@ fn checkered_floor(framebuffer: &mut Framebuffer, interpolation: Interpolation) 
     // The camera is 100 above the floor and looks at the middle of a picture of 640×480.
     let corner = |x: f64, z: f64| {
         let seen = vertex([x, -100.0, z], [x / 240.0, z / 240.0]);
-        Corner { position: dvec2(320.0, 240.0) + seen.position * 4.0, ..seen }
+        ScreenVertex { position: dvec2(320.0, 240.0) + seen.position * 4.0, ..seen }
     };
     let near = [corner(-720.0, 120.0), corner(720.0, 120.0)];
     let far = [corner(-720.0, 2520.0), corner(720.0, 2520.0)];
 
     let texture = Texture::checkerboard(Color::rgb(50, 60, 80), Color::rgb(235, 235, 225));
     for triangle in [[near[0], near[1], far[0]], [near[1], far[1], far[0]]] {
-        step_parameter(triangle, interpolation, Walk::default(), framebuffer.window(), |x, y, point| {
+        step_parameter(triangle, interpolation, Walk::default(), framebuffer.scissor(), |x, y, point| {
             framebuffer.set(x, y, Color::truncated(texture.nearest(point.values, AddressMode::Repeat)));
         });
     }

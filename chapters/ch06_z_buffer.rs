@@ -9,13 +9,13 @@
 use std::process::ExitCode;
 
 use glam::{DVec2, dvec2, dvec3};
-use rasterbook::depth::{DepthEncoding, DepthTest, Target, z_from_w};
-use rasterbook::interpolate::{Interpolation, Projected, step_parameter};
-use rasterbook::program::{Chapter, Variant};
-use rasterbook::scanline::{Corner, Walk};
+use rasterbook::depth::{DepthEncoding, DepthTest, z_from_w};
+use rasterbook::figure::{Chapter, Variant};
+use rasterbook::interpolate::{Interpolation, Projected, ScreenVertex, step_parameter};
+use rasterbook::scanline::Walk;
 use rasterbook::texture::{AddressMode, Texture};
 use rasterbook::transform::{perspective, perspective_divide};
-use rasterbook::{Color, Framebuffer};
+use rasterbook::{Color, Framebuffer, Target};
 
 pub(crate) const CHAPTER: Chapter = Chapter {
     name: "ch06_z_buffer",
@@ -26,15 +26,15 @@ pub(crate) const CHAPTER: Chapter = Chapter {
         Variant::new("painter", painter, "three squares drawn from far to near, without a depth test: each covers what is behind it")
             .source("section 6.1, Figure 6-2"),
         Variant::new("painter-red-first", painter_red_first, "two triangles that pierce each other, red drawn first: green covers red also where red is nearer")
-            .source("section 6.1, Figure 6-3").mended_by("intersecting"),
+            .source("section 6.1, Figure 6-3").remedied_by("intersecting"),
         Variant::new("painter-green-first", painter_green_first, "the same, green drawn first: no order is right")
-            .source("section 6.1, Figure 6-3").mended_by("intersecting"),
+            .source("section 6.1, Figure 6-3").remedied_by("intersecting"),
         Variant::new("intersecting", intersecting, "the same with a z-buffer: each triangle is seen where it is nearer, and they meet in a line")
             .source("section 6.2, Figure 6-3"),
         Variant::new("depth", depth, "a z-buffer, as hardware stores it, in 16 grays: black is near (1), white is far (12); most of them lie close by"),
         Variant::new("w-buffer", w_buffer, "the same scene with ω stored, in 16 grays: black is near (1), white is far (12); each stands for the same distance"),
         Variant::new("uncleared", uncleared, "the second frame of a moving square, depths of the first not cleared: the old square cuts a hole into the new one")
-            .source("section 6.2, section 9.4.1").mended_by("cleared"),
+            .source("section 6.2, section 9.4.1").remedied_by("cleared"),
         Variant::new("cleared", cleared, "the same frame with the depths cleared before it: the square is whole").source("section 6.2"),
     ],
 };
@@ -42,17 +42,17 @@ pub(crate) const CHAPTER: Chapter = Chapter {
 /// The depth that the buffer is cleared to: farther away than anything drawn.
 const FAR_AWAY: f64 = 1000.0;
 
-type Triangle<const N: usize> = [Corner<Projected<f64, N>>; 3];
+type Triangle<const N: usize> = [ScreenVertex<Projected<f64, N>>; 3];
 
 // ANCHOR: vertex
 /// Projects a point of the book's scene with its texture coordinates; its depth z is the third value.
-fn vertex([x, y, z]: [f64; 3], [u, v]: [f64; 2]) -> Corner<Projected<f64, 3>> {
+fn vertex([x, y, z]: [f64; 3], [u, v]: [f64; 2]) -> ScreenVertex<Projected<f64, 3>> {
     const NEAR: f64 = 80.0;
     let mut clip = perspective(dvec3(x, y, z), NEAR);
     // So that the divide leaves the depth: z · z / ω = z.
     clip.z = DepthEncoding::ViewZ.clip_z(z, NEAR, FAR_AWAY);
     let screen = perspective_divide(clip);
-    Corner { position: screen.truncate(), attributes: Projected { w: clip.w, values: [u, v, screen.z] } }
+    ScreenVertex { position: screen.truncate(), varyings: Projected { w: clip.w, values: [u, v, screen.z] } }
 }
 // ANCHOR_END: vertex
 
@@ -66,7 +66,7 @@ fn draw<const N: usize>(
 ) {
     let Target { color, depth } = target;
     let (interpolation, walk) = (Interpolation::PerspectiveCorrect, Walk::default());
-    step_parameter(triangle, interpolation, walk, color.window(), |x, y, point| {
+    step_parameter(triangle, interpolation, walk, color.scissor(), |x, y, point| {
         if depth.test_and_set(x, y, point.values[N - 1], test) {
             color.set(x, y, color_of(point.values));
         }
@@ -97,10 +97,10 @@ fn z_buffer(framebuffer: &mut Framebuffer) {
 // ANCHOR_END: z_buffer
 
 /// Projects a point of space (z into the screen) onto a picture of 640×480 whose middle the camera looks at.
-fn seen_from_middle(x: f64, y: f64, z: f64) -> Corner<Projected<f64, 1>> {
+fn seen_from_middle(x: f64, y: f64, z: f64) -> ScreenVertex<Projected<f64, 1>> {
     let clip = perspective(dvec3(x, y, z), 500.0);
     let position: DVec2 = dvec2(320.0, 240.0) + perspective_divide(clip).truncate();
-    Corner { position, attributes: Projected { w: clip.w, values: [z] } }
+    ScreenVertex { position, varyings: Projected { w: clip.w, values: [z] } }
 }
 
 /// Draws an upright square, its lower left corner given, as two triangles.

@@ -1,27 +1,23 @@
 //! # Chapter 7: clipping
 //!
-//! **What if a triangle reaches behind the eye?** There the division turns everything round. What is not in front must
+//! **What if a triangle reaches behind the eye?** There the division turns everything upside down. What is not in front must
 //! be cut away before the divide, and for that edges must be straight before the divide, depth included.
 //!
-//! New here: the depth a + b/z, which changes evenly on the screen (`lib/depth.rs`, `lib/interpolate.rs`), and clipping
+//! New here: the depth a + b/z, which changes linearly on the screen (`lib/depth.rs`, `lib/interpolate.rs`), and clipping
 //! (`lib/clip.rs`). Book: chapter 7.
 
 use std::process::ExitCode;
 
 use arrayvec::ArrayVec;
 use glam::{DVec4, dvec2, dvec3, dvec4};
-use rasterbook::clip::{
-    ClipTest, ClipVertex, ClipVolume, NdcVertex, Plane, clip_polygon, clip_triangle, fan,
-};
-use rasterbook::depth::{DepthEncoding, Target};
-use rasterbook::interpolate::Projected;
+use rasterbook::clip::{ClipTest, ClipVolume, NdcVertex, Plane, clip_polygon, fan};
+use rasterbook::depth::DepthEncoding;
+use rasterbook::figure::{Chapter, Variant};
+use rasterbook::interpolate::{Projected, ScreenVertex};
 use rasterbook::line::{StepAxis, dda};
-use rasterbook::probe::Assembled;
-use rasterbook::program::{Chapter, Variant};
-use rasterbook::scanline::Corner;
 use rasterbook::texture::{AddressMode, Texture};
 use rasterbook::transform::perspective;
-use rasterbook::{Color, Framebuffer, Rect};
+use rasterbook::{ClipVertex, Color, Framebuffer, Rect, Target};
 
 pub(crate) const CHAPTER: Chapter = Chapter {
     name: "ch07_clipping",
@@ -32,7 +28,7 @@ pub(crate) const CHAPTER: Chapter = Chapter {
         Variant::new("reciprocal", reciprocal, "two crossing walls with the depth −1/z: they meet in a straight, upright line")
             .source("section 7.2"),
         Variant::new("behind", behind, "a floor that begins behind the eye, not clipped: what is behind us turns up in the sky, upside down")
-            .source("section 7.3, Figure 7-5").mended_by("in-front"),
+            .source("section 7.3, Figure 7-5").remedied_by("in-front"),
         Variant::new("in-front", in_front, "the same floor, clipped at the near plane: it ends at the horizon, and below the picture's lower edge")
             .source("section 7.3, Figure 7-5"),
         Variant::new("polygon", polygon, "left: a polygon and a line that cuts it; right: what is left. Green: where the outline enters, red: where it leaves")
@@ -53,15 +49,14 @@ fn draw(
     texel: impl Fn([f64; 2]) -> Color,
 ) {
     let planes = volume.planes(Default::default());
-    target.color.tell(|probe| probe.assembled(&Assembled::new(&triangle, &planes, ClipTest::BeforeDivide)));
-    for piece in fan(clip_triangle(triangle, &planes, ClipTest::BeforeDivide)) {
-        let corners = piece.map(|vertex| {
+    for piece in fan(target.clip_triangle(triangle, &planes, ClipTest::BeforeDivide)) {
+        let on_screen = piece.map(|vertex| {
             let divided = NdcVertex::from(vertex);
             let projected = Projected { w: divided.w, values: divided.varyings };
-            // a + b/z changes evenly on the screen: it is stepped beside t′, and needs no correction.
-            Corner { position: to_screen(divided), attributes: (projected, divided.position.z) }
+            // a + b/z changes linearly on the screen: it is stepped beside t′, and needs no correction.
+            ScreenVertex { position: to_screen(divided), varyings: (projected, divided.position.z) }
         });
-        target.fill(corners, &texel);
+        target.fill(on_screen, &texel);
     }
 }
 // ANCHOR_END: draw
@@ -148,12 +143,12 @@ fn polygon(framebuffer: &mut Framebuffer) {
     ];
     let outline = corners.map(|(x, y)| ClipVertex { position: dvec4(x, y, 0.0, 1.0), varyings: [] });
     // Kept is what lies left of the line x = 190 + y / 20; a plane before the divide, with ω = 1, is a line.
-    let plane = Plane::through_eye(dvec4(-1.0, 0.05, 0.0, 190.0));
+    let plane = Plane::homogeneous(dvec4(-1.0, 0.05, 0.0, 190.0));
     let kept: ArrayVec<ClipVertex<0>, 16> = clip_polygon(&outline, &plane, ClipTest::BeforeDivide);
 
     let line = |framebuffer: &mut Framebuffer, a: DVec4, b: DVec4, color| {
         let [a, b] = [a, b].map(|p| dvec2(p.x, p.y));
-        dda(a, b, StepAxis::Longer, framebuffer.window(), |x, y| framebuffer.set(x, y, color));
+        dda(a, b, StepAxis::Longer, framebuffer.scissor(), |x, y| framebuffer.set(x, y, color));
     };
     let right = dvec4(330.0, 0.0, 0.0, 0.0);
     for shift in [DVec4::ZERO, right] {

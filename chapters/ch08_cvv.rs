@@ -9,16 +9,13 @@
 use std::process::ExitCode;
 
 use glam::{DVec2, DVec3, DVec4, dvec2, dvec3};
-use rasterbook::clip::{ClipTest, ClipVertex, ClipVolume, DepthRange, NdcVertex, Plane, clip_triangle, fan};
-use rasterbook::depth::Target;
-use rasterbook::interpolate::Projected;
+use rasterbook::clip::{ClipTest, ClipVolume, DepthRange, NdcVertex, Plane, clip_triangle, fan};
+use rasterbook::figure::{Chapter, Variant};
+use rasterbook::interpolate::{Projected, ScreenVertex};
 use rasterbook::line::{StepAxis, dda};
-use rasterbook::probe::Assembled;
-use rasterbook::program::{Chapter, Variant};
-use rasterbook::scanline::Corner;
 use rasterbook::texture::{AddressMode, Texture};
 use rasterbook::transform::{Frustum, Viewport, perspective_divide};
-use rasterbook::{Color, Framebuffer, Rect};
+use rasterbook::{ClipVertex, Color, Framebuffer, Rect, Target};
 
 pub(crate) const CHAPTER: Chapter = Chapter {
     name: "ch08_cvv",
@@ -32,7 +29,7 @@ pub(crate) const CHAPTER: Chapter = Chapter {
         Variant::new("frustum", frustum, "left: 35 points in the view volume from above, the eye at the bottom; right: the same in NDC. Equal steps in depth crowd together far away")
             .source("section 8.1, Figure 8-4").size(760, 400),
         Variant::new("divide-first", divide_first, "a floor that passes under the eye, tested after the divide: behind us the comparison turns round, and the floor is cut off far before our feet")
-            .source("section 8.3").mended_by("clip-first"),
+            .source("section 8.3").remedied_by("clip-first"),
         Variant::new("clip-first", clip_first, "the same floor, clipped before the divide: it comes up to the near plane, at the lower border").source("section 8.3"),
         Variant::new("zero-to-one", zero_to_one, "Direct3D's range, 0 ≤ z ≤ ω: another projection, another near plane, the same picture as 'clipped'"),
     ],
@@ -48,14 +45,13 @@ const ASPECT: f64 = 4.0 / 3.0;
 fn draw(target: &mut Target, triangle: [ClipVertex<2>; 3], planes: &[Plane], test: ClipTest) {
     let texture = Texture::book();
     let viewport = Viewport::fitting(target.color.rect(), ASPECT);
-    target.color.tell(|probe| probe.assembled(&Assembled::new(&triangle, planes, test)));
-    for piece in fan(clip_triangle(triangle, planes, test)) {
-        let corners = piece.map(|vertex| {
+    for piece in fan(target.clip_triangle(triangle, planes, test)) {
+        let on_screen = piece.map(|vertex| {
             let NdcVertex { position, w, varyings } = vertex.into();
-            let attributes = (Projected { w, values: varyings }, position.z);
-            Corner { position: viewport.pixel_corners(position), attributes }
+            let varyings = (Projected { w, values: varyings }, position.z);
+            ScreenVertex { position: viewport.pixel_corners(position), varyings }
         });
-        target.fill(corners, |uv| Color::truncated(texture.nearest(uv, AddressMode::Clamp)));
+        target.fill(on_screen, |uv| Color::truncated(texture.nearest(uv, AddressMode::Clamp)));
     }
 }
 
@@ -157,7 +153,7 @@ fn clip_first(framebuffer: &mut Framebuffer) {
 // ANCHOR_END: divide_first
 
 fn draw_line(framebuffer: &mut Framebuffer, a: DVec2, b: DVec2, color: Color) {
-    dda(a, b, StepAxis::Longer, framebuffer.window(), |x, y| framebuffer.set(x, y, color));
+    dda(a, b, StepAxis::Longer, framebuffer.scissor(), |x, y| framebuffer.set(x, y, color));
 }
 
 /// A square of pixels around a point.

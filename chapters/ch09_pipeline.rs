@@ -9,19 +9,14 @@
 use std::process::ExitCode;
 
 use glam::{DVec3, dvec3};
-use rasterbook::Color;
 use rasterbook::area::Winding;
-use rasterbook::clip::ClipVertex;
 use rasterbook::cull::CullMode;
+use rasterbook::figure::{Animation, Canvas, Chapter, Variant};
 use rasterbook::merge::{Blend, Merge};
-use rasterbook::mesh::Mesh;
-use rasterbook::pipeline::RenderState;
-use rasterbook::program::{Animation, Canvas, Chapter, Variant};
-use rasterbook::real::Real;
-use rasterbook::shader::{Shaded, Shader};
 use rasterbook::swap_chain::SwapChain;
 use rasterbook::texture::{AddressMode, Texture};
 use rasterbook::transform::Frustum;
+use rasterbook::{ClipVertex, Color, Mesh, Real, RenderState, Shaded, Shader};
 
 pub(crate) const CHAPTER: Chapter = Chapter {
     name: "ch09_pipeline",
@@ -31,12 +26,12 @@ pub(crate) const CHAPTER: Chapter = Chapter {
         Variant::with_pipeline("cull-ccw", cull_ccw, "two triangles, the back culled: the counter-clockwise one is left").source("section 9.3"),
         Variant::with_pipeline("cull-cw", cull_cw, "the same with clockwise as the front, the back culled: the clockwise one is left").source("section 9.3"),
         Variant::with_pipeline("cull-none", cull_none, "the same, nothing culled: both").source("section 9.3"),
-        Variant::with_pipeline("uncleared", uncleared, "five frames of a moving triangle, nothing cleared between them: the old ones stay").source("section 9.4.1, Figure 9-8").mended_by("cleared"),
+        Variant::with_pipeline("uncleared", uncleared, "five frames of a moving triangle, nothing cleared between them: the old ones stay").source("section 9.4.1, Figure 9-8").remedied_by("cleared"),
         Variant::with_pipeline("cleared", cleared, "the fifth of these frames, color and depth cleared before it").source("section 9.4.1"),
         Variant::with_pipeline("double-buffer", double_buffer, "the near plane comes closer by 0.01 a frame, and the triangle shrinks; no frame is seen half drawn")
             .animated(FLIGHT)
             .source("section 9.4.2"),
-        Variant::with_pipeline("tearing", tearing, "one buffer, seen while it is drawn: the new picture in the lower half, the old one above it").source("section 9.4.2").mended_by("presented"),
+        Variant::with_pipeline("tearing", tearing, "one buffer, seen while it is drawn: the new picture in the lower half, the old one above it").source("section 9.4.2").remedied_by("presented"),
         Variant::with_pipeline("presented", presented, "two buffers, seen at the same moment: the old picture, whole").source("section 9.4.2, Figure 9-9"),
         Variant::with_pipeline("indexed", indexed, "a hill of 49 vertices and 72 triangles; each vertex is shaded once, and up to six triangles share it"),
         Variant::with_pipeline("blended", blended, "translucent triangles over a checkered wall: source-over on the left, where order matters; additive on the right"),
@@ -147,12 +142,12 @@ fn view_of(frame: u32) -> Frustum {
 fn double_buffer(canvas: &mut Canvas) {
     let mut screen = screen_for(canvas);
     draw_frame(canvas, canvas.frame);
-    screen.present(&mut canvas.target.color);
-    canvas.target.color = screen.front().clone();
+    screen.present(canvas.picture_mut());
+    *canvas.picture_mut() = screen.front().clone();
 }
 
 fn screen_for(canvas: &Canvas) -> SwapChain {
-    SwapChain::new(canvas.target.color.width(), canvas.target.color.height())
+    SwapChain::new(canvas.picture().width(), canvas.picture().height())
 }
 
 fn draw_frame(canvas: &mut Canvas, frame: u32) {
@@ -196,9 +191,9 @@ fn cleared(canvas: &mut Canvas) {
 /// A screen with one buffer, looked at when the lower half of the new picture has been drawn.
 fn tearing(canvas: &mut Canvas) {
     draw_frame(canvas, 0);
-    let old = canvas.target.color.clone();
+    let old = canvas.picture().clone();
     draw_frame(canvas, 150);
-    let picture = &mut canvas.target.color;
+    let picture = canvas.picture_mut();
     for y in picture.rect().rows().skip(picture.height() as usize / 2) {
         for x in picture.rect().columns() {
             picture.set(x, y, old.get(x, y).unwrap_or_default());
@@ -210,9 +205,9 @@ fn tearing(canvas: &mut Canvas) {
 fn presented(canvas: &mut Canvas) {
     let mut screen = screen_for(canvas);
     draw_frame(canvas, 0);
-    screen.present(&mut canvas.target.color);
+    screen.present(canvas.picture_mut());
     draw_frame(canvas, 150);
-    canvas.target.color = screen.front().clone();
+    *canvas.picture_mut() = screen.front().clone();
 }
 // ANCHOR_END: tearing
 

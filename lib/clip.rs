@@ -1,8 +1,8 @@
 //! Chapters 7 and 8: cutting away what cannot be projected, or is not to be seen.
 //!
 //! Takes a polygon in clip space, before the perspective divide, and gives the part of it that lies inside a list of
-//! planes. Values need no correction here: before the divide, space is still straight, and what changes evenly along an
-//! edge in camera space changes evenly along it in clip space.
+//! planes. Values need no correction here: before the divide, space is still straight, and what changes linearly along an
+//! edge in camera space changes linearly along it in clip space.
 //!
 //! ```
 //! use glam::dvec4;
@@ -19,7 +19,8 @@ use std::array::from_fn;
 use arrayvec::ArrayVec;
 use glam::{DVec3, DVec4, dvec4};
 
-use crate::probe::Vertex;
+use crate::target::Target;
+use crate::transform::perspective_divide;
 
 /// A vertex in clip space, with the values that it carries.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,7 +32,7 @@ pub struct ClipVertex<const N: usize> {
 }
 
 impl<const N: usize> ClipVertex<N> {
-    /// The point at the parameter t between two vertices; position and values change evenly.
+    /// The point at the parameter t between two vertices; position and values change linearly.
     #[inline]
     fn between(a: Self, b: Self, t: f64) -> Self {
         Self {
@@ -51,19 +52,19 @@ pub struct Plane {
 // ANCHOR: planes
 impl Plane {
     /// ω + x ≥ 0.
-    pub const LEFT: Self = Self::through_eye(dvec4(1.0, 0.0, 0.0, 1.0));
+    pub const LEFT: Self = Self::homogeneous(dvec4(1.0, 0.0, 0.0, 1.0));
     /// ω − x ≥ 0.
-    pub const RIGHT: Self = Self::through_eye(dvec4(-1.0, 0.0, 0.0, 1.0));
+    pub const RIGHT: Self = Self::homogeneous(dvec4(-1.0, 0.0, 0.0, 1.0));
     /// ω + y ≥ 0.
-    pub const BOTTOM: Self = Self::through_eye(dvec4(0.0, 1.0, 0.0, 1.0));
+    pub const BOTTOM: Self = Self::homogeneous(dvec4(0.0, 1.0, 0.0, 1.0));
     /// ω − y ≥ 0.
-    pub const TOP: Self = Self::through_eye(dvec4(0.0, -1.0, 0.0, 1.0));
+    pub const TOP: Self = Self::homogeneous(dvec4(0.0, -1.0, 0.0, 1.0));
     /// ω + z ≥ 0, where NDC run from −1.
-    pub const NEAR: Self = Self::through_eye(dvec4(0.0, 0.0, 1.0, 1.0));
+    pub const NEAR: Self = Self::homogeneous(dvec4(0.0, 0.0, 1.0, 1.0));
     /// z ≥ 0, where NDC run from 0 (Direct3D).
-    pub const NEAR_ZERO: Self = Self::through_eye(dvec4(0.0, 0.0, 1.0, 0.0));
+    pub const NEAR_ZERO: Self = Self::homogeneous(dvec4(0.0, 0.0, 1.0, 0.0));
     /// ω − z ≥ 0.
-    pub const FAR: Self = Self::through_eye(dvec4(0.0, 0.0, -1.0, 1.0));
+    pub const FAR: Self = Self::homogeneous(dvec4(0.0, 0.0, -1.0, 1.0));
 
     /// The six planes of the canonical view volume, in the order of the book (section 8.3, Table 8-1).
     pub const CANONICAL: [Self; 6] =
@@ -72,9 +73,10 @@ impl Plane {
     pub const ZERO_TO_ONE: [Self; 6] =
         [Self::LEFT, Self::RIGHT, Self::BOTTOM, Self::TOP, Self::NEAR_ZERO, Self::FAR];
 
-    /// All points with normal · (x, y, z, ω) ≥ 0.
+    /// All points with normal · (x, y, z, ω) ≥ 0: a plane through the origin of clip space, a *homogeneous* plane. The
+    /// same points are inside, however (x, y, z, ω) is scaled.
     #[must_use]
-    pub const fn through_eye(normal: DVec4) -> Self {
+    pub const fn homogeneous(normal: DVec4) -> Self {
         Self { normal, offset: 0.0 }
     }
 
@@ -107,8 +109,8 @@ pub enum ClipTest {
     BeforeDivide,
     /// NDC: x/ω is compared with 1, a mistake.
     ///
-    /// - Cause: behind the eye ω is negative, and the division turns the comparison round: what is outside seems inside.
-    ///   Nor is x/ω even along an edge, so that the cut is made in the wrong place.
+    /// - Cause: behind the eye ω is negative, and the division reverses the comparison: what is outside seems inside.
+    ///   Nor is x/ω linear along an edge, so that the cut is made in the wrong place.
     /// - Artefact: a triangle that passes the eye is cut where it should not be, or turns up where nothing is.
     /// - Remedy: [`ClipTest::BeforeDivide`]. Book, section 8.3; second note, the proof about w.
     AfterDivide,
@@ -181,7 +183,7 @@ pub type Polygon<const N: usize> = ArrayVec<ClipVertex<N>, MAX_VERTICES>;
 ///         d ────┼─ c               out → out   keep nothing
 /// ```
 ///
-/// The cut lies at t = d_a / (d_a − d_b), d the signed distances. It is always reckoned from the outer end a to the
+/// The cut lies at t = d_a / (d_a − d_b), d the signed distances. It is always computed from the outer end a to the
 /// inner end b, whatever the direction of the edge: two triangles that share the edge get the same point to the last
 /// bit. Exact for convex polygons; of a concave one the parts stay connected along the plane.
 ///
@@ -193,24 +195,45 @@ pub fn clip_polygon<const N: usize, const CAP: usize>(
     test: ClipTest,
 ) -> ArrayVec<ClipVertex<N>, CAP> {
     let mut kept = ArrayVec::new();
-    for (i, &start) in polygon.iter().enumerate() {
-        let end = polygon[(i + 1) % polygon.len()];
-        let [from, to] = [start, end].map(|vertex| test.signed_distance(plane, vertex.position));
-        let (is_start_inside, is_end_inside) = (from >= 0.0, to >= 0.0);
-        if is_start_inside {
-            // Rounding can bend a convex polygon by a hair; a vertex that finds no room is such a hair.
-            let _ = kept.try_push(start);
-        }
-        if is_start_inside != is_end_inside {
-            let cut = if is_start_inside {
-                ClipVertex::between(end, start, to / (to - from))
-            } else {
-                ClipVertex::between(start, end, from / (from - to))
-            };
-            let _ = kept.try_push(cut);
+    for_each_clip(polygon, plane, test, |clip| {
+        let vertex = match clip {
+            Clip::Outside(_) => return,
+            Clip::Inside(vertex) => polygon[vertex],
+            Clip::Cut { outer, inner, t } => ClipVertex::between(polygon[outer], polygon[inner], t),
+        };
+        // Rounding can bend a convex polygon by a hair; a vertex that finds no room is such a hair.
+        let _ = kept.try_push(vertex);
+    });
+    kept
+}
+
+/// What clipping finds on its way round a polygon: a vertex, by its number, or a cut of the edge between two.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Clip {
+    Inside(usize),
+    Outside(usize),
+    Cut { outer: usize, inner: usize, t: f64 },
+}
+
+/// Goes round a polygon: each vertex, and behind it the cut of the edge that begins there, if the plane cuts it.
+#[inline]
+pub(crate) fn for_each_clip<const N: usize>(
+    polygon: &[ClipVertex<N>],
+    plane: &Plane,
+    test: ClipTest,
+    mut emit: impl FnMut(Clip),
+) {
+    let distance = |vertex: usize| test.signed_distance(plane, polygon[vertex].position);
+    for start in 0..polygon.len() {
+        let end = (start + 1) % polygon.len();
+        let [from, to] = [distance(start), distance(end)];
+        emit(if from >= 0.0 { Clip::Inside(start) } else { Clip::Outside(start) });
+        match (from >= 0.0, to >= 0.0) {
+            (true, false) => emit(Clip::Cut { outer: end, inner: start, t: to / (to - from) }),
+            (false, true) => emit(Clip::Cut { outer: start, inner: end, t: from / (from - to) }),
+            _ => {}
         }
     }
-    kept
 }
 // ANCHOR_END: clip_polygon
 
@@ -261,22 +284,66 @@ pub struct NdcVertex<const N: usize> {
 impl<const N: usize> From<ClipVertex<N>> for NdcVertex<N> {
     #[inline]
     fn from(vertex: ClipVertex<N>) -> Self {
-        let position = crate::transform::perspective_divide(vertex.position);
+        let position = perspective_divide(vertex.position);
         Self { position, w: vertex.position.w, varyings: vertex.varyings }
     }
 }
 
-impl<'a, const N: usize> From<&'a ClipVertex<N>> for Vertex<'a> {
-    #[inline]
-    fn from(vertex: &'a ClipVertex<N>) -> Self {
-        Self { position: vertex.position, varyings: &vertex.varyings }
+/// A vertex as it is reported: in clip space, or after the divide in NDC, with ω as the fourth component.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecordedVertex {
+    /// Where it is.
+    pub position: DVec4,
+    /// The values that it carries.
+    pub varyings: Vec<f64>,
+}
+
+impl<const N: usize> From<&ClipVertex<N>> for RecordedVertex {
+    fn from(vertex: &ClipVertex<N>) -> Self {
+        Self { position: vertex.position, varyings: vertex.varyings.to_vec() }
     }
 }
 
-impl<'a, const N: usize> From<&'a NdcVertex<N>> for Vertex<'a> {
-    #[inline]
-    fn from(vertex: &'a NdcVertex<N>) -> Self {
-        Self { position: vertex.position.extend(vertex.w), varyings: &vertex.varyings }
+impl<const N: usize> From<&NdcVertex<N>> for RecordedVertex {
+    fn from(vertex: &NdcVertex<N>) -> Self {
+        Self { position: vertex.position.extend(vertex.w), varyings: vertex.varyings.to_vec() }
+    }
+}
+
+/// The position alone.
+impl From<&RecordedVertex> for ClipVertex<0> {
+    fn from(vertex: &RecordedVertex) -> Self {
+        Self { position: vertex.position, varyings: [] }
+    }
+}
+
+/// A triangle that is about to be clipped, and against what: what is reported.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Assembled {
+    /// The vertices, in clip space.
+    pub vertices: [RecordedVertex; 3],
+    /// Where they were before, in the space of the model, if that is known.
+    pub model: Option<[DVec3; 3]>,
+    /// The planes, in their order.
+    pub planes: Vec<Plane>,
+    /// On which coordinates the test is made.
+    pub test: ClipTest,
+}
+
+impl<D> Target<D> {
+    /// [`clip_triangle`], for a triangle that is about to be drawn here: reported to the target's observer.
+    #[must_use]
+    pub fn clip_triangle<const N: usize>(
+        &self,
+        triangle: [ClipVertex<N>; 3],
+        planes: &[Plane],
+        test: ClipTest,
+    ) -> Polygon<N> {
+        self.color.report(|observer| {
+            let vertices = triangle.each_ref().map(RecordedVertex::from);
+            observer.begun(&Assembled { vertices, model: None, planes: planes.to_vec(), test });
+        });
+        clip_triangle(triangle, planes, test)
     }
 }
 
@@ -290,7 +357,7 @@ mod tests {
         (-3.0..3.0, -3.0..3.0, -3.0..3.0, -1.0..3.0).prop_map(|(x, y, z, w)| dvec4(x, y, z, w))
     }
 
-    /// A triangle whose values are its positions, so that a value tells where it came from.
+    /// A triangle whose values are its positions, so that a value shows where it came from.
     fn triangle() -> impl Strategy<Value = [ClipVertex<4>; 3]> {
         prop::array::uniform3(position().prop_map(|p| ClipVertex { position: p, varyings: p.to_array() }))
     }
@@ -362,8 +429,8 @@ mod tests {
                 for plane in &Plane::CANONICAL {
                     prop_assert!(plane.signed_distance(vertex.position) >= -1e-12);
                 }
-                let told = DVec4::from_array(vertex.varyings);
-                prop_assert!((told - vertex.position).length() < 1e-12, "values stay with their places");
+                let expected = DVec4::from_array(vertex.varyings);
+                prop_assert!((expected - vertex.position).length() < 1e-12, "values stay with their positions");
             }
         }
 

@@ -1,24 +1,21 @@
 //! Chapter 6: which surface is in front. A depth for each pixel, a test, and what a depth is.
 //!
-//! Stands at the end of the data flow, before the framebuffer: a fragment that fails the test is dropped.
+//! Stands at the end of the data flow, in front of the framebuffer: a fragment that fails the test is dropped.
 //!
 //! ```
-//! use rasterbook::Color;
-//! use rasterbook::depth::{DepthTest, Target};
+//! use rasterbook::depth::{DepthBuffer, DepthTest};
 //!
-//! let mut target = Target::new(4, 3);
-//! target.clear(Color::BLACK, 1000.0);
-//! assert!(target.depth.test_and_set(1, 1, 340.0, DepthTest::LessOrEqual)); // in front of nothing
-//! assert!(!target.depth.test_and_set(1, 1, 500.0, DepthTest::LessOrEqual)); // behind the first
-//! assert_eq!(target.depth.get(1, 1), Some(340.0));
+//! let mut buffer = DepthBuffer::new(4, 3);
+//! buffer.clear(1000.0);
+//! assert!(buffer.test_and_set(1, 1, 340.0, DepthTest::LessOrEqual)); // in front of nothing
+//! assert!(!buffer.test_and_set(1, 1, 500.0, DepthTest::LessOrEqual)); // behind the first
+//! assert_eq!(buffer.get(1, 1), Some(340.0));
 //! ```
 
-use crate::interpolate::{Interpolation, Projected, step_parameter_and_depth};
+use crate::observer::SharedObserver;
 use crate::plane::PixelPlane;
-use crate::probe::Listener;
 use crate::real::Scalar;
-use crate::scanline::{Corner, Walk};
-use crate::{Color, Framebuffer, Rect};
+use crate::rect::Rect;
 
 /// When a fragment is drawn: how its depth must compare with the stored one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -56,7 +53,7 @@ impl DepthTest {
 ///     │            ________──────  .·   Reciprocal, Ndc: most of the range is spent
 ///     │     _.·──‾‾             .·      on what is near
 ///     │   .'                 .·
-///     │  /              .·'             ViewZ: evenly
+///     │  /              .·'             ViewZ: linear
 ///     │ /         . ·'
 ///     │/. · '
 ///     └────────────────────────────► z
@@ -87,7 +84,7 @@ impl DepthEncoding {
         }
     }
 
-    /// Whether it changes evenly on the screen, and so needs no correction. Book, section 7.5.1.
+    /// Whether it changes linearly on the screen, and so needs no correction. Book, section 7.5.1.
     #[must_use]
     #[inline]
     pub const fn is_linear_on_screen(self) -> bool {
@@ -118,10 +115,10 @@ pub fn w_from_z(z: f64, near: f64, far: f64) -> f64 {
 pub struct DepthBuffer<D = f64> {
     rect: Rect,
     values: PixelPlane<D>,
-    listener: Option<Listener>,
+    observer: Option<SharedObserver>,
 }
 
-/// Two buffers are equal if they hold the same depths, whoever listens.
+/// Two buffers are equal if they hold the same depths, whether they are observed or not.
 impl<D: PartialEq> PartialEq for DepthBuffer<D> {
     fn eq(&self, other: &Self) -> bool {
         self.rect == other.rect && *self.values == *other.values
@@ -133,7 +130,7 @@ impl<D: Scalar> DepthBuffer<D> {
     #[must_use]
     pub fn new(width: u32, height: u32) -> Self {
         let values = vec![D::of(0.0); width as usize * height as usize];
-        Self { rect: Rect::sized(width, height), values: values.into(), listener: None }
+        Self { rect: Rect::sized(width, height), values: values.into(), observer: None }
     }
 
     /// Gives all pixels the same depth.
@@ -148,10 +145,15 @@ impl<D: Scalar> DepthBuffer<D> {
         self.rect.index(x, y).map(|index| self.values[index])
     }
 
-    /// The plane itself, for who writes many depths at a time; nobody is told of that.
+    /// The plane itself, for stages that write many depths at a time; that is not reported.
     #[cfg(feature = "tiled")]
     pub(crate) const fn plane_mut(&mut self) -> &mut PixelPlane<D> {
         &mut self.values
+    }
+
+    /// From now on this one observes, and no other.
+    pub fn set_observer(&mut self, observer: Option<SharedObserver>) {
+        self.observer = observer;
     }
 
     // ANCHOR: test_and_set
@@ -160,8 +162,8 @@ impl<D: Scalar> DepthBuffer<D> {
     pub fn test_and_set(&mut self, x: i32, y: i32, depth: D, test: DepthTest) -> bool {
         let Some(index) = self.rect.index(x, y) else { return false };
         let passes = test.passes(depth, self.values[index]);
-        if let Some(listener) = &self.listener {
-            listener.tested(x, y, depth.into(), self.values[index].into(), passes);
+        if let Some(observer) = &self.observer {
+            observer.tested((x, y), depth.into(), self.values[index].into(), passes);
         }
         if passes {
             self.values[index] = depth;
@@ -171,87 +173,10 @@ impl<D: Scalar> DepthBuffer<D> {
     // ANCHOR_END: test_and_set
 }
 
-/// What is drawn into: a plane of colors and a plane of depths, of the precision in which the rasterizer computes.
-#[derive(Clone, Debug)]
-pub struct Target<D = f64> {
-    /// The picture.
-    pub color: Framebuffer,
-    /// How far away what is seen in each pixel is.
-    pub depth: DepthBuffer<D>,
-}
-
-impl<D: Scalar> Target<D> {
-    /// A target of `width` × `height` pixels; clear it before drawing.
-    ///
-    /// # Panics
-    /// As [`Framebuffer::new`] does.
-    #[must_use]
-    pub fn sized(width: u32, height: u32) -> Self {
-        Self { color: Framebuffer::new(width, height), depth: DepthBuffer::new(width, height) }
-    }
-
-    /// Gives all pixels a color and a depth: what the last frame has left must not stay. Book, section 9.4.1.
-    pub fn clear(&mut self, color: Color, depth: D) {
-        self.color.clear(color);
-        self.depth.clear(depth);
-    }
-}
-
-impl<D: Scalar> Target<D> {
-    /// The same picture and the same depths, these in another precision.
-    #[must_use]
-    pub fn with_depths_of<E: Scalar>(&self) -> Target<E> {
-        let values: Vec<E> = self.depth.values.iter().map(|&depth| E::of(depth.into())).collect();
-        let depth = DepthBuffer {
-            rect: self.depth.rect,
-            values: values.into(),
-            listener: self.depth.listener.clone(),
-        };
-        Target { color: self.color.clone(), depth }
-    }
-}
-
-impl Target {
-    /// A target of `width` × `height` pixels in double precision; clear it before drawing.
-    ///
-    /// # Panics
-    /// As [`Framebuffer::new`] does.
-    #[must_use]
-    pub fn new(width: u32, height: u32) -> Self {
-        Self::sized(width, height)
-    }
-
-    /// A target for the picture of a framebuffer: of its size, black, and with the same listener.
-    #[must_use]
-    pub fn like(framebuffer: &Framebuffer) -> Self {
-        let mut target = Self::new(framebuffer.width(), framebuffer.height());
-        target.color.listen(framebuffer.listener());
-        target.depth.listener = framebuffer.listener();
-        target
-    }
-
-    // ANCHOR: fill
-    /// Fills a triangle where it is not behind what has been drawn (chapters 7 and 8; the pipeline of chapter 9 has more
-    /// options). Screen space; the depth of a corner, beside its ω and values, changes evenly on the screen.
-    pub fn fill<const N: usize>(
-        &mut self,
-        corners: [Corner<(Projected<f64, N>, f64)>; 3],
-        color_of: impl Fn([f64; N]) -> Color,
-    ) {
-        let Self { color, depth } = self;
-        let (interpolation, walk) = (Interpolation::PerspectiveCorrect, Walk::default());
-        step_parameter_and_depth(corners, interpolation, walk, color.window(), |x, y, point, z| {
-            if depth.test_and_set(x, y, z, DepthTest::LessOrEqual) {
-                color.set(x, y, color_of(point.values));
-            }
-        });
-    }
-    // ANCHOR_END: fill
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::interpolate::{Interpolation, Projected};
     use proptest::prelude::*;
 
     #[test]
@@ -283,7 +208,7 @@ mod tests {
 
         #[test]
         fn a_converted_depth_is_linear_on_the_screen(w in prop::array::uniform2(1.0..10.0), t in 0.0..1.0) {
-            // Book, section 7.5.1: a + b/z changes evenly where ω itself does not.
+            // Book, section 7.5.1: a + b/z changes linearly where ω itself does not.
             let [a, b] = w.map(|w| Projected { w, values: [] });
             let seen = Interpolation::PerspectiveCorrect.between(a, b, t).w;
             let [za, zb, z] = [w[0], w[1], seen].map(|w| z_from_w(w, 1.0, 10.0));

@@ -1,7 +1,7 @@
-//! Chapters 3 and 5: interpolation of the values that the corners of a triangle carry.
+//! Chapters 3 and 5: interpolation of the values that the vertices of a triangle carry.
 //!
 //! Takes the spans of the scanline walk and says which values belong to each pixel; what they mean (a color, texture
-//! coordinates) is the caller's business. The values of one corner are a plain array, `[R; N]`.
+//! coordinates) is the caller's business. The values of one vertex are a plain array, `[R; N]`.
 //!
 //! ```
 //! use glam::dvec2;
@@ -16,13 +16,15 @@ use std::array::from_fn;
 use glam::DVec2;
 
 use crate::area::twice_signed_area;
-use crate::probe::{ScreenTriangle, Window};
+use crate::payload::Payload;
 use crate::real::Real;
-use crate::scanline::{Corner, Edge, Payload, StepLimit, Walk, split};
+use crate::rect::Rect;
+use crate::scanline::{Edge, Half, StepLimit, Walk, split};
+use crate::scissor::Scissor;
 
 // ANCHOR: barycentric_weights
-/// How much each corner of a triangle weighs at the point p: the area of the small triangle opposite to the corner, as
-/// a part of the whole. The three weights sum to 1; one is negative beyond the edge opposite to its corner.
+/// How much each vertex of a triangle weighs at the point p: the area of the small triangle opposite to the vertex, as
+/// a part of the whole. The three weights sum to 1; one is negative beyond the edge opposite to its vertex.
 ///
 /// ```text
 ///            C                 w_A = area(P, B, C) / area(A, B, C)
@@ -45,46 +47,84 @@ pub fn barycentric_weights(p: DVec2, [a, b, c]: [DVec2; 3]) -> [f64; 3] {
 }
 // ANCHOR_END: barycentric_weights
 
-/// The values at the parameter t between a (t = 0) and b (t = 1), changing evenly: (b − a) · t + a. Book, section 3.1.
+/// The values at the parameter t between a (t = 0) and b (t = 1), changing linearly: (b − a) · t + a. Book, section 3.1.
 #[must_use]
 pub fn linear<R: Real, const N: usize>(a: [R; N], b: [R; N], t: R) -> [R; N] {
     from_fn(|i| (b[i] - a[i]) * t + a[i])
 }
 
-// ANCHOR: step_values
+/// A vertex of a triangle on the screen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScreenVertex<V> {
+    /// Screen space, in pixels, y up.
+    pub position: DVec2,
+    /// What the vertex carries: its varyings, in chapter 5 with ω, in chapter 7 with a depth as well.
+    pub varyings: V,
+}
+
+/// A triangle on the screen that is about to be filled row by row: what is announced to observers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ScreenTriangle {
+    /// The vertices, in pixels.
+    pub positions: [DVec2; 3],
+    /// Their ω, if they have been projected.
+    pub w: Option<[f64; 3]>,
+    /// Their varyings.
+    pub varyings: [Vec<f64>; 3],
+    /// Their depths, if a depth is stepped beside t.
+    pub depth: Option<[f64; 3]>,
+    /// How varyings are interpolated.
+    pub interpolation: Interpolation,
+    /// How the rows are walked.
+    pub walk: Walk,
+}
+
 /// Emits the pixels of a triangle, each with its values, which go up the two sides and along each row by equal steps.
 ///
-/// Screen space → (x, y, values). Along any straight line on the screen values change evenly (barycentric
+/// Screen space → (x, y, values). Along any straight line on the screen values change linearly (barycentric
 /// interpolation), so that one addition a pixel is enough. Source: book, sections 3.2.4 and 3.2.5.
 pub fn step_values<const N: usize>(
-    corners: [Corner<[f64; N]>; 3],
+    triangle: [ScreenVertex<[f64; N]>; 3],
     walk: Walk,
-    window: impl Into<Window>,
+    scissor: impl Into<Scissor>,
+    emit: impl FnMut(i32, i32, [f64; N]),
+) {
+    let (positions, values) = positions_and_varyings(triangle);
+    let scissor = scissor.into();
+    scissor.report(|observer| {
+        let varyings = values.map(|values| values.to_vec());
+        let interpolation = Interpolation::Affine;
+        observer.begun(&ScreenTriangle { positions, w: None, varyings, depth: None, interpolation, walk });
+    });
+    step_values_in(positions, values, walk, scissor.rect, emit);
+    scissor.report(|observer| observer.done());
+}
+
+fn positions_and_varyings<V: Copy>(triangle: [ScreenVertex<V>; 3]) -> ([DVec2; 3], [V; 3]) {
+    (triangle.map(|vertex| vertex.position), triangle.map(|vertex| vertex.varyings))
+}
+
+// ANCHOR: step_values
+/// Steps the values that the three vertices carry up the sides of the triangle, and along each row.
+fn step_values_in<const N: usize>(
+    triangle: [DVec2; 3],
+    values: [[f64; N]; 3],
+    walk: Walk,
+    scissor: Rect,
     mut emit: impl FnMut(i32, i32, [f64; N]),
 ) {
-    let window = window.into();
-    window.tell(|probe| {
-        let values = corners.each_ref().map(|corner| corner.attributes.as_slice());
-        let corners = corners.map(|corner| corner.position);
-        let interpolation = Interpolation::Affine;
-        probe.triangle(&ScreenTriangle { corners, w: None, values, depth: None, interpolation, walk });
-    });
-    for half in split(corners, linear).into_iter().flatten() {
-        half.walk(
-            |edge| [edge.start.attributes, edge.end.attributes],
-            walk,
-            window.rect,
-            |span| {
-                let [start, end] = span.payload;
-                span.step(start, end, |x, values| emit(x, span.y, values));
-            },
-        );
+    let Some(split) = split(triangle) else { return };
+    // The values at the ends of the halves' edges; those of the new point P′ lie between those of P₁ and P₃.
+    let [lower, upper] = split.attach(values, linear);
+    for (half, values) in [(split.lower, lower), (split.upper, upper)] {
+        half.step(&values, walk, scissor, |span, [start, end]| {
+            span.step(start, end, walk.limit, |x, values| emit(x, span.y, values));
+        });
     }
-    window.tell(|probe| probe.done());
 }
 // ANCHOR_END: step_values
 
-/// What a corner carries once it has been projected (chapter 5): its distance ω and its values.
+/// What a vertex carries once it has been projected (chapter 5): its distance ω and its values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Projected<R, const N: usize> {
     /// The fourth component before the perspective divide: the distance along the camera's z axis.
@@ -97,16 +137,16 @@ pub struct Projected<R, const N: usize> {
 /// How values are interpolated on the screen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Interpolation {
-    /// Evenly on the screen, a mistake as soon as the corners are not equally far away.
+    /// Linearly on the screen, a mistake as soon as the vertices are not equally far away.
     ///
     /// - Cause: equal steps on the screen are not equal steps in space; what is far away is squeezed.
     /// - Artefact: a texture bends at the diagonal of a quad and swims when the view moves.
     /// - Remedy: [`Interpolation::PerspectiveCorrect`]. Book, section 5.3, Figure 5-3.
     Affine,
-    /// Evenly in space: the book's formula ⑧. Book, section 5.4.
+    /// Linearly in space: the book's formula ⑧. Book, section 5.4.
     #[default]
     PerspectiveCorrect,
-    /// Evenly in space by the usual two steps: 1/ω and V/ω change evenly on the screen. Book, section 5.5.4.
+    /// Linearly in space by the usual two steps: 1/ω and V/ω change linearly on the screen. Book, section 5.5.4.
     Reciprocal,
 }
 
@@ -148,7 +188,7 @@ fn perspective_correct<R: Real, const N: usize>(
 // ANCHOR_END: perspective_correct
 
 // ANCHOR: reciprocal
-/// The same in the form that most texts give (book, section 5.5.4): interpolate 1/ω and V/ω evenly, then divide.
+/// The same in the form that most texts give (book, section 5.5.4): interpolate 1/ω and V/ω linearly, then divide.
 fn reciprocal<R: Real, const N: usize>(a: Projected<R, N>, b: Projected<R, N>, t: R) -> Projected<R, N> {
     let one = R::of(1.0);
     let one_over_w = one / a.w + (one / b.w - one / a.w) * t;
@@ -157,139 +197,158 @@ fn reciprocal<R: Real, const N: usize>(a: Projected<R, N>, b: Projected<R, N>, t
 }
 // ANCHOR_END: reciprocal
 
-// ANCHOR: step_parameter
 /// Emits the pixels of a projected triangle, each with its ω and its values.
 ///
 /// Screen space → (x, y, ω and values). What goes up the sides and along each row by equal steps is the parameter t′;
 /// `interpolation` makes values of it, once for each end of a row and once for each pixel. Source: book, section 5.4,
 /// Figure 5-7.
 pub fn step_parameter<const N: usize>(
-    corners: [Corner<Projected<f64, N>>; 3],
+    triangle: [ScreenVertex<Projected<f64, N>>; 3],
     interpolation: Interpolation,
     walk: Walk,
-    window: impl Into<Window>,
+    scissor: impl Into<Scissor>,
     mut emit: impl FnMut(i32, i32, Projected<f64, N>),
 ) {
-    let corners = corners.map(|corner| corner.with((corner.attributes, ())));
-    step_parameter_and(corners, interpolation, walk, window.into(), |x, y, point, ()| emit(x, y, point));
+    let (positions, points) = positions_and_varyings(triangle);
+    let scissor = scissor.into();
+    begin_projected(&scissor, positions, &points, None, interpolation, walk);
+    step_parameter_in(positions, points, [0.0; 3], interpolation, walk, scissor.rect, |x, y, point, _| {
+        emit(x, y, point);
+    });
+    scissor.report(|observer| observer.done());
 }
 
-/// The same with a depth that changes evenly on the screen, beside t′ (chapter 7).
+/// The same with a depth that changes linearly on the screen, beside t′ (chapter 7).
 ///
 /// Screen space → (x, y, ω and values, depth). Source: book, section 7.2.
 pub fn step_parameter_and_depth<const N: usize>(
-    corners: [Corner<(Projected<f64, N>, f64)>; 3],
+    triangle: [ScreenVertex<(Projected<f64, N>, f64)>; 3],
     interpolation: Interpolation,
     walk: Walk,
-    window: impl Into<Window>,
+    scissor: impl Into<Scissor>,
     emit: impl FnMut(i32, i32, Projected<f64, N>, f64),
 ) {
-    step_parameter_and(corners, interpolation, walk, window.into(), emit);
+    let (positions, varyings) = positions_and_varyings(triangle);
+    let (points, depths) = (varyings.map(|(point, _)| point), varyings.map(|(_, depth)| depth));
+    let scissor = scissor.into();
+    begin_projected(&scissor, positions, &points, Some(depths), interpolation, walk);
+    step_parameter_in(positions, points, depths, interpolation, walk, scissor.rect, emit);
+    scissor.report(|observer| observer.done());
 }
 
-/// What changes evenly on the screen beside t′: nothing, or a depth.
-trait Evenly: Payload {
-    fn depth(self) -> Option<f64>;
-}
-
-impl Evenly for () {
-    fn depth(self) -> Option<f64> {
-        None
-    }
-}
-
-impl Evenly for f64 {
-    fn depth(self) -> Option<f64> {
-        Some(self)
-    }
-}
-
-/// What is stepped along edges and rows: t′, and something that changes evenly on the screen.
-///
-/// At an edge's end the book's remedy limits t′ alone.
-#[derive(Clone, Copy)]
-struct Along<E> {
-    t: f64,
-    evenly: E,
-}
-
-impl<E: Payload> Payload for Along<E> {
-    fn slope(start: Self, end: Self, length: f64) -> Self {
-        Self { t: f64::slope(start.t, end.t, length), evenly: E::slope(start.evenly, end.evenly, length) }
-    }
-
-    fn stepped(self, slope: Self, count: f64) -> Self {
-        Self { t: self.t.stepped(slope.t, count), evenly: self.evenly.stepped(slope.evenly, count) }
-    }
-
-    fn limited(self, start: Self, end: Self, limit: StepLimit) -> Self {
-        let evenly = match limit {
-            StepLimit::Everywhere => self.evenly.limited(start.evenly, end.evenly, limit),
-            StepLimit::Edges | StepLimit::Overrun => self.evenly,
-        };
-        Self { t: self.t.limited(start.t, end.t, limit), evenly }
-    }
-}
-
-fn step_parameter_and<E: Evenly, const N: usize>(
-    corners: [Corner<(Projected<f64, N>, E)>; 3],
+#[inline]
+fn begin_projected<const N: usize>(
+    scissor: &Scissor,
+    positions: [DVec2; 3],
+    points: &[Projected<f64, N>; 3],
+    depth: Option<[f64; 3]>,
     interpolation: Interpolation,
     walk: Walk,
-    window: Window,
-    mut emit: impl FnMut(i32, i32, Projected<f64, N>, E),
 ) {
-    window.tell(|probe| {
-        let values = corners.each_ref().map(|corner| corner.attributes.0.values.as_slice());
-        let w = Some(corners.map(|corner| corner.attributes.0.w));
-        let depth = corners[0].attributes.1.depth();
-        let depth = depth.map(|_| corners.map(|corner| corner.attributes.1.depth().unwrap_or_default()));
-        let corners = corners.map(|corner| corner.position);
-        probe.triangle(&ScreenTriangle { corners, w, values, depth, interpolation, walk });
+    scissor.report(|observer| {
+        let varyings = points.map(|point| point.values.to_vec());
+        let w = Some(points.map(|point| point.w));
+        observer.begun(&ScreenTriangle { positions, w, varyings, depth, interpolation, walk });
     });
+}
+
+// ANCHOR: step_parameter
+/// Steps t′, and the depth, up the sides of the triangle and along each row.
+#[inline]
+fn step_parameter_in<const N: usize>(
+    triangle: [DVec2; 3],
+    points: [Projected<f64, N>; 3],
+    depths: [f64; 3],
+    interpolation: Interpolation,
+    walk: Walk,
+    scissor: Rect,
+    mut emit: impl FnMut(i32, i32, Projected<f64, N>, f64),
+) {
+    let Some(split) = split(triangle) else { return };
     let between = |a, b, t| interpolation.between(a, b, t);
-    let evenly_between = |a: E, b, t| a.stepped(E::slope(a, b, 1.0), t);
-    let cut = |a: (_, E), b: (_, E), t| (between(a.0, b.0, t), evenly_between(a.1, b.1, t));
-    for half in split(corners, cut).into_iter().flatten() {
-        // t′ goes from 0 at an edge's start to 1 at its end.
-        let payload = |edge: &Edge<(_, E)>| {
-            [
-                Along { t: 0.0, evenly: edge.start.attributes.1 },
-                Along { t: 1.0, evenly: edge.end.attributes.1 },
-            ]
-        };
-        half.walk(payload, walk, window.rect, |span| {
-            let [left, right] = span.payload;
-            let start = between(half.left.start.attributes.0, half.left.end.attributes.0, left.t);
-            let end = between(half.right.start.attributes.0, half.right.end.attributes.0, right.t);
-            let row = [Along { t: 0.0, ..left }, Along { t: 1.0, ..right }];
-            span.step(row[0], row[1], |x, along| emit(x, span.y, between(start, end, along.t), along.evenly));
+    let [lower_points, upper_points] = split.attach(points, between);
+    let [lower_depths, upper_depths] = split.attach(depths, |a, b, t| a + (b - a) * t);
+    for (half, points, depths) in
+        [(split.lower, lower_points, lower_depths), (split.upper, upper_points, upper_depths)]
+    {
+        // Up the sides: t′ goes from 0 at an edge's start to 1 at its end.
+        half.step(&EdgeParameter::on(&depths), walk, scissor, |span, [left, right]| {
+            // What is at the two ends of the row.
+            let start = between(points.left.start, points.left.end, left.t);
+            let end = between(points.right.start, points.right.end, right.t);
+            // Along the row: t′ goes from 0 to 1 again.
+            let [from, to] = [EdgeParameter { t: 0.0, ..left }, EdgeParameter { t: 1.0, ..right }];
+            span.step(from, to, walk.limit, |x, here| {
+                emit(x, span.y, between(start, end, here.t), here.depth);
+            });
         });
     }
-    window.tell(|probe| probe.done());
 }
 // ANCHOR_END: step_parameter
+
+/// What is stepped along edges and rows: t′, and a depth, which changes linearly on the screen.
+///
+/// At an edge's end the book's remedy clamps t′ alone.
+#[derive(Clone, Copy)]
+struct EdgeParameter {
+    t: f64,
+    depth: f64,
+}
+
+impl EdgeParameter {
+    /// At the ends of the edges of a half on which the depths are these.
+    #[inline]
+    fn on(depths: &Half<f64>) -> Half<Self> {
+        let edge = |depths: Edge<f64>| Edge {
+            start: Self { t: 0.0, depth: depths.start },
+            end: Self { t: 1.0, depth: depths.end },
+        };
+        Half { left: edge(depths.left), right: edge(depths.right) }
+    }
+}
+
+impl Payload for EdgeParameter {
+    #[inline]
+    fn slope(start: Self, end: Self, length: f64) -> Self {
+        Self { t: f64::slope(start.t, end.t, length), depth: f64::slope(start.depth, end.depth, length) }
+    }
+
+    #[inline]
+    fn stepped(self, slope: Self, count: f64) -> Self {
+        Self { t: self.t.stepped(slope.t, count), depth: self.depth.stepped(slope.depth, count) }
+    }
+
+    #[inline]
+    fn clamped(self, start: Self, end: Self, limit: StepLimit) -> Self {
+        let depth = match limit {
+            StepLimit::Everywhere => self.depth.clamped(start.depth, end.depth, limit),
+            StepLimit::Edges | StepLimit::Overrun => self.depth,
+        };
+        Self { t: self.t.clamped(start.t, end.t, limit), depth }
+    }
+}
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Rect;
+
     use crate::transform::{perspective, perspective_divide};
     use glam::{DVec3, dvec2, dvec3};
     use proptest::prelude::*;
 
-    const WINDOW: Rect = Rect::sized(60, 60);
+    const SCISSOR: Rect = Rect::sized(60, 60);
 
-    fn corners<const N: usize>(positions: [DVec2; 3], values: [[f64; N]; 3]) -> [Corner<[f64; N]>; 3] {
-        from_fn(|i| Corner { position: positions[i], attributes: values[i] })
+    fn vertices<const N: usize>(positions: [DVec2; 3], values: [[f64; N]; 3]) -> [ScreenVertex<[f64; N]>; 3] {
+        from_fn(|i| ScreenVertex { position: positions[i], varyings: values[i] })
     }
 
     /// The point of the screen that the walk stands for at each pixel: positions, interpolated like any value.
     fn walk_points(positions: [DVec2; 3]) -> Vec<((i32, i32), DVec2)> {
         let mut points = Vec::new();
         step_values(
-            corners(positions, positions.map(|p| p.to_array())),
+            vertices(positions, positions.map(|p| p.to_array())),
             Walk::default(),
-            WINDOW,
+            SCISSOR,
             |x, y, p| {
                 points.push(((x, y), DVec2::from(p)));
             },
@@ -333,7 +392,7 @@ mod tests {
         ) {
             let points = walk_points(t);
             let mut i = 0;
-            step_values(corners(t, values.map(|v| [v])), Walk::default(), WINDOW, |x, y, [value]| {
+            step_values(vertices(t, values.map(|v| [v])), Walk::default(), SCISSOR, |x, y, [value]| {
                 let (pixel, point) = points[i];
                 assert_eq!(pixel, (x, y));
                 let weights = barycentric_weights(point, t);
@@ -353,7 +412,7 @@ mod tests {
         }
 
         #[test]
-        fn rows_of_whole_pixel_corners_are_met_exactly(t in triangle(whole_point())) {
+        fn rows_of_whole_pixel_vertices_are_met_exactly(t in triangle(whole_point())) {
             // Across, a slanted side still lies between two pixels on most rows.
             for ((x, y), point) in walk_points(t) {
                 prop_assert!((point.y - f64::from(y)).abs() < 1e-9, "{point} at ({x}, {y})");
@@ -371,13 +430,13 @@ mod tests {
         }
 
         #[test]
-        fn limited_everywhere_no_depth_leaves_the_range_of_the_corners(
+        fn clamped_everywhere_no_depth_leaves_the_range_of_the_vertices(
             t in prop::array::uniform3(point()), z in prop::array::uniform3(-1.0..1.0), w in prop::array::uniform3(0.5..9.0),
         ) {
-            let corners = from_fn(|i| Corner { position: t[i], attributes: (Projected { w: w[i], values: [] }, z[i]) });
+            let triangle = from_fn(|i| ScreenVertex { position: t[i], varyings: (Projected { w: w[i], values: [] }, z[i]) });
             let walk = Walk { limit: StepLimit::Everywhere, ..Walk::default() };
             let (low, high) = (z.iter().copied().fold(1.0, f64::min), z.iter().copied().fold(-1.0, f64::max));
-            step_parameter_and_depth(corners, Interpolation::PerspectiveCorrect, walk, WINDOW, |x, y, _, depth| {
+            step_parameter_and_depth(triangle, Interpolation::PerspectiveCorrect, walk, SCISSOR, |x, y, _, depth| {
                 assert!(depth >= low - 1e-9 && depth <= high + 1e-9, "{depth} at ({x}, {y}) is not in {low}..{high}");
             });
         }
@@ -389,7 +448,7 @@ mod tests {
             let [a, b] = from_fn(|i| Projected { w: w[i], values: [v[i]] });
             let [book, usual] = [Interpolation::PerspectiveCorrect, Interpolation::Reciprocal].map(|i| i.between(a, b, t));
             prop_assert!(is_near(book.w, usual.w, 100.0) && is_near(book.values[0], usual.values[0], 5.0));
-            prop_assert!((1.0 / book.w - ((1.0 - t) / a.w + t / b.w)).abs() < 1e-9, "1/ω changes evenly");
+            prop_assert!((1.0 / book.w - ((1.0 - t) / a.w + t / b.w)).abs() < 1e-9, "1/ω changes linearly");
         }
 
         #[test]
@@ -413,8 +472,8 @@ mod tests {
             let normal = (space[1] - space[0]).cross(space[2] - space[0]);
             prop_assume!(normal.length() > 1.0);
 
-            let projected = from_fn(|i| Corner { position: seen[i], attributes: Projected { w: z[i], values: uv[i] } });
-            step_parameter(projected, Interpolation::PerspectiveCorrect, Walk::default(), WINDOW, |x, y, found| {
+            let projected = from_fn(|i| ScreenVertex { position: seen[i], varyings: Projected { w: z[i], values: uv[i] } });
+            step_parameter(projected, Interpolation::PerspectiveCorrect, Walk::default(), SCISSOR, |x, y, found| {
                 let (pixel, point) = points.next().expect("a point for each pixel");
                 assert_eq!(pixel, (x, y));
                 // The ray from the eye through the point, and where it meets the plane of the triangle.
@@ -457,12 +516,12 @@ mod tests {
             for limit in [StepLimit::Overrun, StepLimit::Edges, StepLimit::Everywhere] {
                 let walk = Walk { limit, ..Walk::default() };
                 let mut count = 0;
-                step_values(corners(triangle, [[w]; 3]), walk, WINDOW, |_, _, _| count += 1);
+                step_values(vertices(triangle, [[w]; 3]), walk, SCISSOR, |_, _, _| count += 1);
                 for interpolation in
                     [Interpolation::Affine, Interpolation::PerspectiveCorrect, Interpolation::Reciprocal]
                 {
                     let projected = triangle
-                        .map(|position| Corner { position, attributes: Projected { w, values: [x] } });
+                        .map(|position| ScreenVertex { position, varyings: Projected { w, values: [x] } });
                     step_parameter(projected, interpolation, walk, Rect::sized(1, 1), |_, _, _| count += 1);
                 }
                 assert!(count <= 3 * 60 * 60, "a triangle covers no pixel more than twice");

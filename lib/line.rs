@@ -7,8 +7,8 @@
 //! use rasterbook::{Color, Framebuffer, line};
 //!
 //! let mut framebuffer = Framebuffer::new(8, 8);
-//! let window = framebuffer.window();
-//! line::dda(dvec2(0.0, 1.0), dvec2(3.0, 4.0), line::StepAxis::Longer, window, |x, y| {
+//! let scissor = framebuffer.scissor();
+//! line::dda(dvec2(0.0, 1.0), dvec2(3.0, 4.0), line::StepAxis::Longer, scissor, |x, y| {
 //!     framebuffer.set(x, y, Color::RED);
 //! });
 //! assert_eq!(framebuffer.get(2, 3), Some(Color::RED));
@@ -18,7 +18,8 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use crate::probe::Window;
+use crate::rect::Pixel;
+use crate::scissor::Scissor;
 
 /// Which coordinate a line steps by one pixel at a time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -34,8 +35,18 @@ pub enum StepAxis {
     X,
 }
 
-// ANCHOR: dda
-/// Emits the pixels of the line from `a` to `b` (screen space, pixels) that lie in `window`.
+/// A line on the screen, in pixels: what [`dda`] draws, and announces to observers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Line {
+    /// One end.
+    pub a: DVec2,
+    /// The other end.
+    pub b: DVec2,
+    /// Which coordinate is stepped.
+    pub axis: StepAxis,
+}
+
+/// Emits the pixels of the line from `a` to `b` (screen space, pixels) that lie in the scissor.
 ///
 /// The running coordinate goes up by one from the lower end, the other one by the slope; the pixel is where both are
 /// cut to whole numbers. The right end, of a steep line the upper end, is not drawn: a chain of lines that goes on to the
@@ -50,46 +61,72 @@ pub enum StepAxis {
 ///
 /// From `b` to `a` the pixels are the same: a line always runs from its left end, or from its lower end if it is steep.
 /// A point that is not finite draws nothing. Source: book, section 2.1.
-pub fn dda(a: DVec2, b: DVec2, axis: StepAxis, window: impl Into<Window>, mut emit: impl FnMut(i32, i32)) {
+pub fn dda(a: DVec2, b: DVec2, axis: StepAxis, scissor: impl Into<Scissor>, mut emit: impl FnMut(i32, i32)) {
     if !(a.is_finite() && b.is_finite()) {
         return;
     }
-    let window = window.into();
-    window.tell(|probe| probe.line(a, b, axis));
-    let mut emit_inside = |x: i32, y: i32| {
-        if window.rect.contains(x, y) {
+    let (line, scissor) = (Line { a, b, axis }, scissor.into());
+    scissor.report(|observer| observer.begun(&line));
+    let Scissor { rect, .. } = scissor;
+    let visible = if line.is_x_major() { rect.columns() } else { rect.rows() };
+    line.step(visible, |(x, y), _| {
+        if rect.contains(x, y) {
             emit(x, y);
         }
-    };
+    });
+    scissor.report(|observer| observer.done());
+}
 
-    // A flat line steps x from its left end, a steep one steps y from its lower end.
-    let slope = (b.y - a.y) / (b.x - a.x);
-    if slope.abs() < 1.0 || axis == StepAxis::X {
-        let (start, end) = if a.x < b.x { (a, b) } else { (b, a) };
-        step([start.x, start.y], end.x, slope, window.rect.columns(), &mut emit_inside);
-    } else {
-        let (start, end) = if a.y < b.y { (a, b) } else { (b, a) };
-        step([start.y, start.x], end.y, 1.0 / slope, window.rect.rows(), |y, x| emit_inside(x, y));
+impl Line {
+    /// Δy/Δx.
+    #[must_use]
+    pub fn slope(&self) -> f64 {
+        (self.b.y - self.a.y) / (self.b.x - self.a.x)
     }
-    window.tell(|probe| probe.done());
+
+    /// Whether x is stepped by one pixel at a time, not y.
+    #[must_use]
+    pub fn is_x_major(&self) -> bool {
+        self.slope().abs() < 1.0 || self.axis == StepAxis::X
+    }
+
+    // ANCHOR: dda
+    /// Emits the pixels of the line, from left to right or, if it is steep, from bottom to top; `visible` are the columns
+    /// or the rows that can be seen. With each pixel the running coordinate and the other one, before they are cut to
+    /// whole numbers.
+    pub(crate) fn step(&self, visible: Range<i32>, mut emit: impl FnMut(Pixel, [f64; 2])) {
+        let Self { a, b, .. } = *self;
+        if self.is_x_major() {
+            // Step x from the left end.
+            let (start, end) = if a.x < b.x { (a, b) } else { (b, a) };
+            step_by_one([start.x, start.y], end.x, self.slope(), visible, |x, y| {
+                emit((x as i32, y as i32), [x, y]);
+            });
+        } else {
+            // Step y from the lower end.
+            let (start, end) = if a.y < b.y { (a, b) } else { (b, a) };
+            let slope = 1.0 / self.slope();
+            step_by_one([start.y, start.x], end.y, slope, visible, |y, x| emit((x as i32, y as i32), [y, x]));
+        }
+    }
 }
 
 /// Steps the first coordinate by one while it is below `end`, and the second by `slope`, within `visible`.
-fn step(
+fn step_by_one(
     [mut along, mut across]: [f64; 2],
     end: f64,
     slope: f64,
     visible: Range<i32>,
-    mut emit: impl FnMut(i32, i32),
+    mut emit: impl FnMut(f64, f64),
 ) {
-    // What lies before the window is passed over in one stride.
+    // What lies before the first visible pixel is passed over in one stride.
     let skipped = f64::from(visible.start) - along.trunc();
     if skipped > 0.0 {
         along = f64::from(visible.start) + along.fract();
         across += slope * skipped;
     }
     while along < end.trunc() && along < f64::from(visible.end) {
-        emit(along as i32, across as i32);
+        emit(along, across);
         along += 1.0;
         across += slope;
     }
@@ -99,11 +136,11 @@ fn step(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Rect;
+    use crate::rect::Rect;
     use glam::dvec2;
     use proptest::prelude::*;
 
-    /// The pixels of a line in a window of 8 × 6, as a reader would draw them; a `2` would be a pixel drawn twice.
+    /// The pixels of a line in a scissor of 8 × 6, as a reader would draw them; a `2` would be a pixel drawn twice.
     fn drawn(a: DVec2, b: DVec2, axis: StepAxis) -> String {
         let mut counts = [[0; 8]; 6];
         dda(a, b, axis, Rect::sized(8, 6), |x, y| counts[y as usize][x as usize] += 1);
@@ -160,7 +197,7 @@ mod tests {
             assert!(pixels(dvec2(0.0, 0.0), dvec2(5.0, bad)).is_empty());
         }
         assert!(pixels(dvec2(3.0, 3.0), dvec2(3.0, 3.0)).is_empty(), "a line without length");
-        assert_eq!(pixels(dvec2(-far, 7.0), dvec2(far, 7.0)).len(), 200, "a line across the whole window");
+        assert_eq!(pixels(dvec2(-far, 7.0), dvec2(far, 7.0)).len(), 200, "a line across the whole scissor");
         assert_eq!(pixels(dvec2(7.0, -far), dvec2(7.0, far)).len(), 200);
         assert!(pixels(dvec2(far, far), dvec2(2.0 * far, far)).is_empty());
         assert!(pixels(dvec2(-f64::MAX, -1.0), dvec2(f64::MAX, 1.0)).len() <= 200);

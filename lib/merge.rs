@@ -11,11 +11,12 @@
 
 use std::array::from_fn;
 
-use crate::Color;
-use crate::depth::{DepthTest, Target};
-use crate::framebuffer::Rounding;
+use crate::color::Color;
+use crate::depth::DepthTest;
 use crate::real::{Real, Scalar};
+use crate::rect::Pixel;
 use crate::shader::{Paint, Shaded};
+use crate::target::Target;
 
 /// How a fragment's color and the color already there make the new one. Second note, output merger.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -40,6 +41,28 @@ impl Blend {
             Self::SourceOver => from_fn(|i| source[i] * opacity + there[i] * (R::of(1.0) - opacity)),
             Self::Additive => from_fn(|i| (source[i] * opacity + there[i]).min(R::of(255.0))),
         }
+    }
+}
+
+/// How a channel becomes a whole number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rounding {
+    /// The fraction is cut off, as the book does.
+    Truncate,
+    /// To the nearest, halves upwards: add ½, then truncate. Direct3D 11.3 functional specification, 3.2.3.6.
+    Nearest,
+}
+
+impl Rounding {
+    /// The color with channels in 0..=255; values outside are clamped, NaN gives 0.
+    #[must_use]
+    #[inline]
+    pub fn color<R: Scalar>(self, channels: [R; 3]) -> Color {
+        let channels = match self {
+            Self::Truncate => channels,
+            Self::Nearest => channels.map(|channel| channel + R::of(0.5)),
+        };
+        Color::truncated(channels.map(Into::into))
     }
 }
 
@@ -78,7 +101,7 @@ pub fn merge<R: Scalar>(
     target: &mut Target<R>,
     options: Merge,
     rounding: Rounding,
-    [x, y]: [i32; 2],
+    (x, y): Pixel,
     depth: R,
     shaded: Shaded<R>,
 ) -> Verdict {
@@ -127,7 +150,7 @@ mod tests {
                 let drawn = [Shaded::texel(texel), Shaded::opaque(texel.to_f64())].map(|shaded| {
                     let mut target = Target::new(1, 1);
                     target.clear(Color::rgb(100, 200, 1), 1.0);
-                    merge(&mut target, Merge { blend, ..Merge::default() }, rounding, [0, 0], 0.5, shaded)
+                    merge(&mut target, Merge { blend, ..Merge::default() }, rounding, (0, 0), 0.5, shaded)
                 });
                 assert_eq!(drawn[0], drawn[1], "{rounding:?}, {blend:?}");
             }
@@ -140,7 +163,7 @@ mod tests {
         target.clear(Color::BLACK, 1.0);
         let red = Shaded::opaque([255.0_f64, 0.0, 0.0]);
         let mut merge =
-            |options, depth, shaded| merge(&mut target, options, Rounding::Truncate, [0, 0], depth, shaded);
+            |options, depth, shaded| merge(&mut target, options, Rounding::Truncate, (0, 0), depth, shaded);
         let untouched = Merge { depth_write: false, ..Merge::default() };
         assert_eq!(merge(untouched, 0.5, red), Verdict::Drawn(Color::RED));
         assert_eq!(merge(Merge::default(), 0.7, red), Verdict::Drawn(Color::RED), "0.5 was not stored");

@@ -19,7 +19,7 @@ use std::fmt;
 /// `A` is the attribute record of a vertex: whatever the vertex shader needs, such as a position and texture
 /// coordinates. The book keeps two buffers of numbers side by side (section 9.2, Figure 9-2); a list of records says
 /// the same.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mesh<A> {
     vertices: Vec<A>,
     indices: Option<Vec<u32>>,

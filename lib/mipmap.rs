@@ -1,7 +1,7 @@
 //! Chapter 10, beyond the book: smaller and smaller copies of a texture, so that a pixel always covers about one texel.
 //!
 //! Takes texture coordinates and how they change from pixel to pixel, and gives a filtered color. Where a pixel covers
-//! many texels, one of them, or four, says little about their mean; the *mip maps* hold that mean, reckoned beforehand.
+//! many texels, one of them, or four, says little about their mean; the *mip maps* hold that mean, computed beforehand.
 //!
 //! ```
 //! use rasterbook::Color;
@@ -16,9 +16,9 @@
 use std::array::from_fn;
 use std::sync::Arc;
 
-use crate::Color;
-use crate::framebuffer::Rounding;
+use crate::color::Color;
 use crate::interpolate::linear;
+use crate::merge::Rounding;
 use crate::real::Real;
 use crate::texture::{AddressMode, Texture, bilinear};
 
@@ -100,10 +100,10 @@ impl MipMaps {
     #[must_use]
     pub fn bilinear<R: Real>(&self, uv: [R; 2], level: R, mode: AddressMode) -> [R; 3] {
         let level = (self.clamped(level) + R::of(0.5)).floor();
-        let size: [R; 2] = R::look_up(level, R::of(0.0), |level, _| self.size_and_start(level).0);
-        let [start]: [R; 1] = R::look_up(level, R::of(0.0), |level, _| [self.size_and_start(level).1]);
+        let size: [R; 2] = R::gather(level, R::of(0.0), |level, _| self.size_and_start(level).0);
+        let [start]: [R; 1] = R::gather(level, R::of(0.0), |level, _| [self.size_and_start(level).1]);
         bilinear(uv, size, mode, |column, row| {
-            R::look_up(column, start + row, |column, row| self.texel(column, row))
+            R::gather(column, start + row, |column, row| self.texel(column, row))
         })
     }
 

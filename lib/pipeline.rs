@@ -3,14 +3,8 @@
 //! ```
 //! use glam::{DVec4, dvec4};
 //! use rasterbook::clip::ClipVertex;
-//! use rasterbook::depth::Target;
 //! use rasterbook::mesh::Mesh;
-//! use rasterbook::pipeline::{LoadOp, RenderState, draw};
-//! use rasterbook::probe::Silent;
-//! use rasterbook::raster::Scanline;
-//! use rasterbook::real::Real;
-//! use rasterbook::shader::{Shaded, Shader};
-//! use rasterbook::Color;
+//! use rasterbook::{Color, LoadOp, Real, RenderState, Scanline, Shaded, Shader, Silent, Target, draw};
 //!
 //! struct White;
 //!
@@ -35,101 +29,13 @@
 
 use arrayvec::ArrayVec;
 
-use crate::area::Winding;
-use crate::clip::{
-    ClipTest, ClipVertex, ClipVolume, DepthRange, MAX_VERTICES, NdcVertex, clip_triangle, fan,
-};
-use crate::cull::CullMode;
-use crate::depth::{DepthEncoding, Target};
-use crate::interpolate::Interpolation;
-use crate::merge::Merge;
+use crate::clip::{Assembled, ClipVertex, MAX_VERTICES, NdcVertex, RecordedVertex, clip_triangle, fan};
 use crate::mesh::Mesh;
-use crate::probe::{Assembled, Probe, Vertex};
+use crate::probe::Probe;
 use crate::raster::Rasterizer;
-use crate::real::Real;
-use crate::scanline::Walk;
 use crate::shader::Shader;
-use crate::transform::Viewport;
-use crate::{Color, Rect};
-
-/// What is in the target when drawing begins.
-///
-/// A rasterizer that draws a part of the picture at a time, as GPUs with tiles and [`tiled`](crate::tiled) do, can clear
-/// it just before: then it need not be fetched from far away. Source: Vulkan specification, *Load operations*.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum LoadOp {
-    /// What has been drawn before.
-    #[default]
-    Load,
-    /// The clear color and the clear depth, everywhere.
-    Clear,
-}
-
-/// How a mesh is drawn: plain data, and every default is the right one.
-///
-/// ```
-/// use rasterbook::interpolate::Interpolation;
-/// use rasterbook::pipeline::RenderState;
-///
-/// let wrong = RenderState { interpolation: Interpolation::Affine, ..RenderState::default() };
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RenderState {
-    /// Which part of space is kept (stage 3).
-    pub clip_volume: ClipVolume,
-    /// On which coordinates that is tested (stage 3).
-    pub clip_test: ClipTest,
-    /// The range of z in NDC (stage 3).
-    pub depth_range: DepthRange,
-    /// Which triangles are left out (stage 5).
-    pub cull: CullMode,
-    /// In which direction the vertices of a front run on the screen (stage 5).
-    pub front_face: Winding,
-    /// Where on the screen the view is laid; the whole framebuffer if nothing is said (stage 6).
-    pub viewport: Option<Viewport>,
-    /// How the rows of a triangle are walked (stage 7).
-    pub walk: Walk,
-    /// How varyings are interpolated (stage 7).
-    pub interpolation: Interpolation,
-    /// What is stored as a depth (stage 7).
-    pub depth_encoding: DepthEncoding,
-    /// How a fragment meets what has been drawn before (stages 9 and 10).
-    pub merge: Merge,
-    /// What is in the target when drawing begins.
-    pub load: LoadOp,
-    /// The color of a pixel where nothing is drawn.
-    pub clear_color: Color,
-    /// The depth of a pixel where nothing is drawn.
-    pub clear_depth: f64,
-}
-
-impl Default for RenderState {
-    fn default() -> Self {
-        Self {
-            clip_volume: ClipVolume::default(),
-            clip_test: ClipTest::default(),
-            depth_range: DepthRange::default(),
-            cull: CullMode::default(),
-            front_face: Winding::CounterClockwise,
-            viewport: None,
-            walk: Walk::default(),
-            interpolation: Interpolation::default(),
-            depth_encoding: DepthEncoding::default(),
-            merge: Merge::default(),
-            load: LoadOp::default(),
-            clear_color: Color::BLACK,
-            clear_depth: 1.0,
-        }
-    }
-}
-
-impl RenderState {
-    /// The viewport in a framebuffer of this rectangle.
-    #[must_use]
-    pub fn viewport_in(&self, rect: Rect) -> Viewport {
-        self.viewport.unwrap_or_else(|| Viewport::whole(rect))
-    }
-}
+use crate::state::{LoadOp, RenderState};
+use crate::target::Target;
 
 // ANCHOR: draw
 /// Draws a mesh into a target.
@@ -143,12 +49,8 @@ pub fn draw<S: Shader<N>, Z: Rasterizer, P: Probe + ?Sized, const N: usize>(
     target: &mut Target<Z::Depth>,
     probe: &P,
 ) {
-    // A rasterizer may do all of it in a way of its own: then the picture is the same.
-    if rasterizer.draw_mesh(mesh, shader, state, target) {
-        return;
-    }
     if state.load == LoadOp::Clear {
-        target.clear(state.clear_color, Z::Depth::of(state.clear_depth));
+        state.clear(target);
     }
 
     // 1. Vertex shading: every vertex once, however many triangles share it.
@@ -160,10 +62,10 @@ pub fn draw<S: Shader<N>, Z: Rasterizer, P: Probe + ?Sized, const N: usize>(
     // 3. Clipping, in clip space, where edges and values are still straight.
     let planes = state.clip_volume.planes(state.depth_range);
     let polygons = triangles.map(|(indices, triangle)| {
-        probe.assembled(&Assembled {
-            vertices: triangle.each_ref().map(Vertex::from),
-            model: &|| all_three(indices.map(|index| shader.position(&mesh.vertices()[index]))),
-            planes: &planes,
+        probe.assembled(&|| Assembled {
+            vertices: triangle.each_ref().map(RecordedVertex::from),
+            model: all_three(indices.map(|index| shader.position(&mesh.vertices()[index]))),
+            planes: planes.to_vec(),
             test: state.clip_test,
         });
         clip_triangle(triangle, &planes, state.clip_test)

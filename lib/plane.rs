@@ -1,16 +1,16 @@
-//! Chapter 1: a value for each pixel of a picture, in memory. Colors and depths are kept in such planes.
+//! Ground: a value for each pixel of a picture, in memory. Colors and depths are kept in such planes.
 //!
-//! It reads as a slice. It also keeps what the fast rasterizer knows of it: which parts hold nothing but the background
-//! and need not be cleared again. Any other write makes that void.
+//! It reads as a slice. A stage that writes many pixels at a time can leave a memo with it, which is kept until a value
+//! changes: what is known of the values need not be found out again.
 
 use std::ops::{Deref, DerefMut};
 
 /// The values of a picture, row by row from below, each from left to right.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct PixelPlane<T> {
     values: Vec<T>,
     #[cfg(feature = "tiled")]
-    blank: Blank,
+    memo: Option<Box<dyn std::any::Any + Send + Sync>>,
 }
 
 impl<T> From<Vec<T>> for PixelPlane<T> {
@@ -18,8 +18,15 @@ impl<T> From<Vec<T>> for PixelPlane<T> {
         Self {
             values,
             #[cfg(feature = "tiled")]
-            blank: Blank::default(),
+            memo: None,
         }
+    }
+}
+
+/// The same values, without a memo.
+impl<T: Clone> Clone for PixelPlane<T> {
+    fn clone(&self) -> Self {
+        self.values.clone().into()
     }
 }
 
@@ -36,70 +43,39 @@ impl<T> DerefMut for PixelPlane<T> {
     #[inline]
     fn deref_mut(&mut self) -> &mut [T] {
         #[cfg(feature = "tiled")]
-        self.blank.forget();
+        if self.memo.is_some() {
+            self.memo = None;
+        }
         &mut self.values
     }
 }
 
 #[cfg(feature = "tiled")]
-pub(crate) use blank::Blank;
-
-#[cfg(feature = "tiled")]
-mod blank {
-    use super::PixelPlane;
-
-    /// Which tiles of a plane are blank: all their values are the background's.
-    #[derive(Clone, Debug, Default)]
-    pub(crate) struct Blank {
-        /// Width and height of the picture whose tiles they are.
-        size: [i32; 2],
-        /// The bits of the background.
-        background: u32,
-        /// For each tile whether it is known to be blank. No tile: nothing is known.
-        tiles: Vec<bool>,
+impl<T> PixelPlane<T> {
+    /// Takes the memo out, if one of this type was left and no value has changed since.
+    pub(crate) fn take_memo<M: 'static>(&mut self) -> Option<Box<M>> {
+        self.memo.take()?.downcast().ok()
     }
 
-    impl<T> PixelPlane<T> {
-        /// Takes out what is known of the tiles of a picture of this size. After that nothing is, until `set_blank`.
-        pub(crate) fn take_blank(&mut self, size: [i32; 2]) -> Blank {
-            let mut blank = std::mem::take(&mut self.blank);
-            if blank.size != size {
-                blank.size = size;
-                blank.forget();
-            }
-            blank
-        }
-
-        /// Says what is known.
-        pub(crate) fn set_blank(&mut self, blank: Blank) {
-            self.blank = blank;
-        }
+    /// Leaves a memo about the values as they are now.
+    pub(crate) fn leave_memo<M: Send + Sync + 'static>(&mut self, memo: Box<M>) {
+        self.memo = Some(memo);
     }
+}
 
-    impl Blank {
-        /// Whether a tile is known to hold nothing but a background of these bits.
-        pub(crate) fn holds(&self, tile: usize, background: u32) -> bool {
-            self.background == background && self.tiles.get(tile) == Some(&true)
-        }
+#[cfg(all(test, feature = "tiled"))]
+mod tests {
+    use super::*;
 
-        /// Nothing is known any more.
-        #[inline]
-        pub(super) fn forget(&mut self) {
-            self.tiles.clear();
-        }
-
-        /// The plane has been cleared, and then only tiles that are not empty were drawn.
-        pub(crate) fn cleared(&mut self, background: u32, tiles: usize, is_empty: impl Fn(usize) -> bool) {
-            self.background = background;
-            self.forget();
-            self.tiles.extend((0..tiles).map(is_empty));
-        }
-
-        /// Tiles that are not empty were drawn.
-        pub(crate) fn drawn(&mut self, is_empty: impl Fn(usize) -> bool) {
-            for (tile, is_blank) in self.tiles.iter_mut().enumerate() {
-                *is_blank &= is_empty(tile);
-            }
-        }
+    #[test]
+    fn a_memo_is_kept_until_a_value_changes() {
+        let mut plane = PixelPlane::from(vec![1, 2, 3]);
+        plane.leave_memo(Box::new("rising"));
+        assert_eq!(plane[1], 2);
+        assert_eq!(plane.clone().take_memo::<&str>(), None, "a copy has none");
+        assert_eq!(plane.take_memo::<&str>().as_deref(), Some(&"rising"));
+        plane.leave_memo(Box::new("rising"));
+        plane[1] = 9;
+        assert_eq!(plane.take_memo::<&str>(), None);
     }
 }

@@ -8,8 +8,8 @@
 //! use glam::{DVec3, dvec3};
 //! use rasterbook::Color;
 //! use rasterbook::clip::{ClipVertex, NdcVertex};
-//! use rasterbook::depth::Target;
-//! use rasterbook::pipeline::RenderState;
+//! use rasterbook::Target;
+//! use rasterbook::RenderState;
 //! use rasterbook::probe::Silent;
 //! use rasterbook::raster::{Rasterizer, Scanline};
 //! use rasterbook::real::Real;
@@ -28,8 +28,8 @@
 //! }
 //!
 //! // One triangle in NDC, as it comes from clipping and the divide.
-//! let corners = [dvec3(-1.0, -1.0, 0.0), dvec3(1.0, -1.0, 0.0), dvec3(0.0, 1.0, 0.0)];
-//! let triangle = corners.map(|position| NdcVertex { position, w: 1.0, varyings: [] });
+//! let positions = [dvec3(-1.0, -1.0, 0.0), dvec3(1.0, -1.0, 0.0), dvec3(0.0, 1.0, 0.0)];
+//! let triangle = positions.map(|position| NdcVertex { position, w: 1.0, varyings: [] });
 //! let (state, mut target) = (RenderState::default(), Target::new(32, 24));
 //! target.clear(Color::BLACK, state.clear_depth);
 //! Scanline.draw([triangle].into_iter(), &state, &Green, &mut target, &Silent);
@@ -37,17 +37,15 @@
 //! ```
 
 use crate::area::{is_drawable, twice_signed_area};
-use crate::clip::NdcVertex;
-use crate::depth::Target;
-use crate::framebuffer::Rounding;
-use crate::interpolate::{Projected, step_parameter_and_depth};
-use crate::merge::merge;
-use crate::mesh::Mesh;
-use crate::pipeline::RenderState;
-use crate::probe::{FragmentEvent, Probe, Vertex};
+use crate::clip::{NdcVertex, RecordedVertex};
+use crate::fragment::FragmentStages;
+use crate::interpolate::{Projected, ScreenVertex, step_parameter_and_depth};
+use crate::merge::Rounding;
+use crate::probe::{Piece, Probe};
 use crate::real::Scalar;
-use crate::scanline::Corner;
 use crate::shader::Shader;
+use crate::state::RenderState;
+use crate::target::Target;
 use crate::varyings::{TriangleVaryings, weight_gradients};
 
 /// Draws triangles, NDC → target.
@@ -65,18 +63,6 @@ pub trait Rasterizer {
         target: &mut Target<Self::Depth>,
         probe: &P,
     );
-
-    /// Draws a whole mesh, all stages of the pipeline and the load operation, if the rasterizer has a way of its own to do
-    /// so; `false` if not.
-    fn draw_mesh<S: Shader<N>, const N: usize>(
-        &self,
-        _mesh: &Mesh<S::Attributes>,
-        _shader: &S,
-        _state: &RenderState,
-        _target: &mut Target<Self::Depth>,
-    ) -> bool {
-        false
-    }
 }
 
 /// The book's rasterizer: rows between two edges, from chapter 2, with everything that has come since.
@@ -114,48 +100,29 @@ fn draw_triangle<S: Shader<N>, P: Probe + ?Sized, const N: usize>(
     // 5. Culling, by the signed area in NDC.
     let [a, b, c] = triangle.map(|vertex| vertex.position.truncate());
     let signed_area = twice_signed_area(a, b, c);
-    probe.piece(triangle.each_ref().map(Vertex::from), signed_area);
+    probe.piece(&|| Piece { vertices: triangle.each_ref().map(RecordedVertex::from), signed_area });
     if !is_drawable(signed_area) || state.cull.culls(signed_area, state.front_face) {
         probe.culled();
         return;
     }
 
     // 6. Viewport: NDC → screen.
-    let window = target.color.window();
-    let viewport = state.viewport_in(window.rect);
-    let corners = triangle.map(|vertex| {
+    let scissor = target.color.scissor();
+    let viewport = state.viewport_in(scissor.rect);
+    let on_screen = triangle.map(|vertex| {
         let projected = Projected { w: vertex.w, values: vertex.varyings };
-        Corner {
-            position: viewport.pixel_corners(vertex.position),
-            attributes: (projected, vertex.position.z),
-        }
+        let position = viewport.pixel_corners(vertex.position);
+        ScreenVertex { position, varyings: (projected, vertex.position.z) }
     });
 
     // How values change from pixel to pixel, for shaders that ask.
     let varyings = TriangleVaryings::new(triangle, state.interpolation);
-    let gradients = weight_gradients(corners.map(|corner| corner.position));
+    let gradients = weight_gradients(on_screen.map(|vertex| vertex.position));
 
-    // 7. Rasterization: which pixels, and which values.
-    step_parameter_and_depth(corners, state.interpolation, state.walk, window, |x, y, point, z| {
-        // What is not linear on the screen is ω itself, which is interpolated like a value.
-        let depth = if state.depth_encoding.is_linear_on_screen() { z } else { point.w };
-        // 8. Fragment shading.
-        let shaded = if S::USES_DERIVATIVES {
-            shader.fragment_with_derivatives(point.values, varyings.derivatives(&point, gradients))
-        } else {
-            shader.fragment(point.values)
-        };
-        // 9. Depth test, and 10. blending.
-        let verdict = merge(target, state.merge, Rounding::Truncate, [x, y], depth, shaded);
-        probe.fragment(&FragmentEvent {
-            x,
-            y,
-            w: point.w,
-            depth,
-            varyings: &point.values,
-            color: shaded.color.channels(),
-            verdict,
-        });
+    // 7. Rasterization: which pixels, and which values. Each fragment goes through the stages 8 to 10.
+    let mut stages = FragmentStages { shader, state, rounding: Rounding::Truncate, target, probe };
+    step_parameter_and_depth(on_screen, state.interpolation, state.walk, scissor, |x, y, point, z| {
+        stages.draw((x, y), point, z, |point| varyings.derivatives(point, gradients));
     });
 }
 // ANCHOR_END: draw_triangle

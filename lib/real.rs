@@ -17,11 +17,18 @@
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use crate::Color;
+use crate::color::Color;
+
+/// Only this library says what a number is: the pictures depend on every operation being exact IEEE arithmetic.
+pub(crate) mod sealed {
+    /// Implemented for the number types and their masks alone.
+    pub trait Sealed {}
+}
 
 /// A number with the four operations, which are exact IEEE operations: one rounding each, nothing fused.
 pub trait Real:
-    Copy
+    sealed::Sealed
+    + Copy
     + Debug
     + Add<Output = Self>
     + Sub<Output = Self>
@@ -58,17 +65,20 @@ pub trait Real:
     /// A function of one number, for each of them: what has no formula in the four operations, such as a power.
     #[must_use]
     fn map(self, function: impl Fn(f64) -> f64) -> Self;
-    /// Looks up a record of C numbers by two whole numbers that are not negative, such as a texel by column and row.
+    /// The same for a function of N numbers that gives M, such as a fragment shader written for `f64`.
     #[must_use]
-    fn look_up<const C: usize>(
-        column: Self,
-        row: Self,
-        table: impl Fn(usize, usize) -> [f64; C],
-    ) -> [Self; C];
-    /// The color in a column and a row (not negative, fractions are cut off) of a plane of colors in which a row has 2 to the
+    fn map_all<const N: usize, const M: usize>(
+        values: [Self; N],
+        function: impl Fn([f64; N]) -> [f64; M],
+    ) -> [Self; M];
+    /// Gathers a record of C numbers from a table, by two whole numbers that are not negative, such as a texel by column and row.
+    #[must_use]
+    fn gather<const C: usize>(column: Self, row: Self, table: impl Fn(usize, usize) -> [f64; C])
+    -> [Self; C];
+    /// Gathers the color in a column and a row (not negative, fractions are cut off) of a plane of colors in which a row has 2 to the
     /// power of `row_bits` places. It must be inside the plane: outside, the answer is any color, or a panic.
     #[must_use]
-    fn look_up_color(column: Self, row: Self, row_bits: u32, colors: &[Color]) -> Self::Colors;
+    fn gather_color(column: Self, row: Self, row_bits: u32, colors: &[Color]) -> Self::Colors;
     /// The channels of colors, 0..=255.
     #[must_use]
     fn channels(colors: Self::Colors) -> [Self; 3];
@@ -81,7 +91,7 @@ impl Scalar for f64 {}
 impl Scalar for f32 {}
 
 /// Yes or no, for one number or for several.
-pub trait Mask: Copy + Debug {
+pub trait Mask: sealed::Sealed + Copy + Debug {
     /// The same answer for all.
     fn all(answer: bool) -> Self;
     /// Yes where both say yes.
@@ -91,6 +101,8 @@ pub trait Mask: Copy + Debug {
     #[must_use]
     fn not(self) -> Self;
 }
+
+impl sealed::Sealed for bool {}
 
 impl Mask for bool {
     #[inline]
@@ -112,6 +124,8 @@ impl Mask for bool {
 /// The same lines for both sizes of a plain number.
 macro_rules! plain_number {
     ($number:ident) => {
+        impl sealed::Sealed for $number {}
+
         impl Real for $number {
             type Mask = bool;
             type Colors = Color;
@@ -158,7 +172,15 @@ macro_rules! plain_number {
             }
 
             #[inline]
-            fn look_up<const C: usize>(
+            fn map_all<const N: usize, const M: usize>(
+                values: [Self; N],
+                function: impl Fn([f64; N]) -> [f64; M],
+            ) -> [Self; M] {
+                function(values.map(f64::from)).map(Self::of)
+            }
+
+            #[inline]
+            fn gather<const C: usize>(
                 column: Self,
                 row: Self,
                 table: impl Fn(usize, usize) -> [f64; C],
@@ -167,7 +189,7 @@ macro_rules! plain_number {
             }
 
             #[inline]
-            fn look_up_color(column: Self, row: Self, row_bits: u32, colors: &[Color]) -> Color {
+            fn gather_color(column: Self, row: Self, row_bits: u32, colors: &[Color]) -> Color {
                 // A plane has fewer than 2³² columns and rows; from a float, a `u32` is made faster than a `usize`.
                 let [column, row] = [column, row].map(|index| index as u32 as usize);
                 colors[(row << row_bits) + column]

@@ -1,20 +1,16 @@
 //! Chapter 2: filling a triangle row by row.
 //!
-//! Takes three corners on the screen, splits the triangle into two halves with a level edge, walks up both sides of
-//! each half and emits one span of pixels a row: coverage only. What is drawn in a span is the caller's business, and
-//! so is what a corner carries besides its position (its *attributes*), and what is stepped along the two sides (the
-//! *payload*): nothing in chapter 2, values in chapter 3, the parameter t in chapter 5.
+//! Takes three points on the screen, splits the triangle into two halves with a horizontal edge, walks up both sides of
+//! each half and emits one span of pixels a row: coverage only. What is drawn in a span is the caller's business.
 //!
 //! ```
 //! use glam::dvec2;
-//! use rasterbook::scanline::{Corner, Walk, split};
+//! use rasterbook::scanline::{Walk, spans};
 //! use rasterbook::Rect;
 //!
-//! let corners = [dvec2(0.0, 0.0), dvec2(0.0, 4.0), dvec2(4.0, 0.0)].map(|position| Corner { position, attributes: () });
+//! let triangle = [dvec2(0.0, 0.0), dvec2(0.0, 4.0), dvec2(4.0, 0.0)];
 //! let mut pixels = 0;
-//! for half in split(corners, |(), (), _| ()).into_iter().flatten() {
-//!     half.walk(|_| [(), ()], Walk::default(), Rect::sized(8, 8), |span| pixels += span.columns().len());
-//! }
+//! spans(triangle, Walk::default(), Rect::sized(8, 8), |span| pixels += span.columns().len());
 //! assert_eq!(pixels, 5 + 4 + 3 + 2);
 //! ```
 
@@ -22,9 +18,9 @@ use std::ops::Range;
 
 use glam::{DVec2, dvec2};
 
-use crate::Rect;
 use crate::area::{is_drawable, twice_signed_area};
-use crate::probe::Window;
+use crate::rect::Rect;
+use crate::scissor::Scissor;
 
 /// Whether the two sides of a row may pass the ends of their edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -34,28 +30,28 @@ pub enum EdgeWalk {
     Clamped,
     /// x goes where the slope leads, a mistake.
     ///
-    /// - Cause: on a nearly level edge one step of y moves x by thousands of pixels, past the end of the edge.
+    /// - Cause: on a nearly horizontal edge one step of y moves x by thousands of pixels, past the end of the edge.
     /// - Artefact: rows that shoot far out of the triangle.
     /// - Remedy: [`EdgeWalk::Clamped`]. Book, section 2.2, Figure 2-4.
     Unclamped,
 }
 
-/// Whether a payload may pass the value that it has at the end of what it is stepped along.
+/// From chapter 3 on: whether a payload may pass the value that it has at the end of what it is stepped along.
 ///
 /// A row stands for the height trunc(y), an edge ends at its own height: the last step may go beyond it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum StepLimit {
-    /// Nothing is limited, a mistake.
+    /// Nothing is clamped, a mistake.
     ///
     /// - Cause: the last row of an edge lies up to one pixel beyond the edge's end, and so does the last pixel of a row.
     /// - Artefact: values outside the range of the vertices; in a texture, texels from beyond the triangle ("spikes").
     /// - Remedy: [`StepLimit::Edges`] as in the book (chapter 11), or [`StepLimit::Everywhere`].
     Overrun,
-    /// Limited along the two sides after each row, not along the row: the book's remedy. The last pixel of a row may
-    /// still pass the end, and a depth that is stepped beside t is not limited.
+    /// Clamped along the two sides after each row, not along the row: the book's remedy. The last pixel of a row may
+    /// still pass the end, and a depth that is stepped beside t is not clamped.
     #[default]
     Edges,
-    /// Limited along the sides and along the row, depth included: nothing leaves the range of the vertices.
+    /// Clamped along the sides and along the row, depth included: nothing leaves the range of the vertices.
     Everywhere,
 }
 
@@ -64,98 +60,54 @@ pub enum StepLimit {
 pub struct Walk {
     /// Whether x is kept between the ends of its edge.
     pub edges: EdgeWalk,
-    /// Whether the payload is kept between its values at the ends.
+    /// Whether a payload is kept between its values at the ends.
     pub limit: StepLimit,
 }
 
-/// Something that changes by equal steps from one end of an edge, or of a row, to the other.
-pub trait Payload: Copy {
-    /// The step for one pixel, from `start` to `end` over `length` pixels: (end − start) / length.
-    #[must_use]
-    fn slope(start: Self, end: Self, length: f64) -> Self;
-    /// This value after `count` steps.
-    #[must_use]
-    fn stepped(self, slope: Self, count: f64) -> Self;
-    /// This value, but not beyond `end` as seen from `start`; `limit` is not [`StepLimit::Overrun`].
-    #[must_use]
-    fn limited(self, start: Self, end: Self, limit: StepLimit) -> Self;
-}
-
-/// Chapter 2: nothing but coverage.
-impl Payload for () {
-    fn slope((): (), (): (), _: f64) {}
-    fn stepped(self, (): (), _: f64) {}
-    fn limited(self, (): (), (): (), _: StepLimit) {}
-}
-
-/// One number: a coordinate, or the parameter t of chapter 5.
-impl Payload for f64 {
-    fn slope(start: Self, end: Self, length: f64) -> Self {
-        (end - start) / length
-    }
-
-    fn stepped(self, slope: Self, count: f64) -> Self {
-        self + slope * count
-    }
-
-    fn limited(self, start: Self, end: Self, _: StepLimit) -> Self {
-        if end > start {
-            self.min(end)
-        } else if end < start {
-            self.max(end)
-        } else {
-            self
-        }
+// ANCHOR: spans
+/// Emits the spans of a triangle, those of the lower half first. Screen space, in pixels, y up.
+///
+/// Nothing for a triangle without area or with coordinates that are not finite. Source: book, section 2.2.
+pub fn spans(triangle: [DVec2; 3], walk: Walk, scissor: impl Into<Scissor>, mut emit: impl FnMut(Span)) {
+    let scissor = scissor.into();
+    if let Some(Split { lower, upper, .. }) = split(triangle) {
+        lower.spans(walk, scissor.clone(), &mut emit);
+        upper.spans(walk, scissor, &mut emit);
     }
 }
+// ANCHOR_END: spans
 
-/// Chapter 3: several values, each by itself.
-impl<P: Payload, const N: usize> Payload for [P; N] {
-    fn slope(start: Self, end: Self, length: f64) -> Self {
-        std::array::from_fn(|i| P::slope(start[i], end[i], length))
-    }
-
-    fn stepped(self, slope: Self, count: f64) -> Self {
-        std::array::from_fn(|i| self[i].stepped(slope[i], count))
-    }
-
-    fn limited(self, start: Self, end: Self, limit: StepLimit) -> Self {
-        std::array::from_fn(|i| self[i].limited(start[i], end[i], limit))
-    }
-}
-
-/// A corner of a triangle on the screen.
+/// An edge, from its lower end to its upper end. What is at an end is its position, unless said otherwise.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Corner<A> {
-    /// Screen space, in pixels, y up.
-    pub position: DVec2,
-    /// What else belongs to the corner.
-    pub attributes: A,
-}
-
-impl<A> Corner<A> {
-    /// The same corner with other attributes.
-    pub fn with<B>(&self, attributes: B) -> Corner<B> {
-        Corner { position: self.position, attributes }
-    }
-}
-
-/// An edge, from its lower end to its upper end.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Edge<A> {
+pub struct Edge<T = DVec2> {
     /// The lower end.
-    pub start: Corner<A>,
+    pub start: T,
     /// The upper end.
-    pub end: Corner<A>,
+    pub end: T,
 }
 
-/// One of the two halves of a triangle: below or above the level line through its middle vertex.
+/// One of the two halves of a triangle: below or above the horizontal line through its middle vertex.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Half<A> {
+pub struct Half<T = DVec2> {
     /// The side at which the rows begin.
-    pub left: Edge<A>,
+    pub left: Edge<T>,
     /// The side at which the rows end.
-    pub right: Edge<A>,
+    pub right: Edge<T>,
+}
+
+/// A triangle that has been split at the height of its middle vertex.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Split {
+    /// The half below the middle vertex.
+    pub lower: Half,
+    /// The half above it.
+    pub upper: Half,
+    /// The vertices from bottom to top, P₁, P₂ and P₃: their numbers in the triangle.
+    pub order: [usize; 3],
+    /// Where on the long edge the new point P′ lies: 0 at P₁, 1 at P₃.
+    pub t: f64,
+    /// Whether P₂ is to the right of P′.
+    pub is_middle_right: bool,
 }
 
 // ANCHOR: split
@@ -173,186 +125,161 @@ pub struct Half<A> {
 ///                       P₁
 /// ```
 ///
-/// Lower half first. `between` gives the attributes at the parameter t between two corners. `None` for a triangle
-/// without area or with coordinates that are not finite. Source: book, section 2.2, Figure 2-3.
-pub fn split<A: Copy>(corners: [Corner<A>; 3], between: impl Fn(A, A, f64) -> A) -> Option<[Half<A>; 2]> {
-    let [a, b, c] = corners.map(|corner| corner.position);
+/// `None` for a triangle without area or with coordinates that are not finite. Source: book, section 2.2, Figure 2-3.
+#[must_use]
+pub fn split(triangle: [DVec2; 3]) -> Option<Split> {
+    let [a, b, c] = triangle;
     if !is_drawable(twice_signed_area(a, b, c)) {
         return None;
     }
 
-    // Sort the corners by height.
-    let [p1, p2, p3] = sorted_by_height(corners);
+    // Sort the vertices by height.
+    let order = by_height(triangle);
+    let [p1, p2, p3] = order.map(|i| triangle[i]);
 
     // Find P′ on the long edge.
-    let t = (p2.position.y - p1.position.y) / (p3.position.y - p1.position.y);
-    let x = p1.position.x + (p3.position.x - p1.position.x) * t;
-    let p =
-        Corner { position: dvec2(x, p2.position.y), attributes: between(p1.attributes, p3.attributes, t) };
+    let t = (p2.y - p1.y) / (p3.y - p1.y);
+    let p = dvec2(p1.x + (p3.x - p1.x) * t, p2.y);
 
     // Left is left.
-    let (left, right) = if p2.position.x > p.position.x { (p, p2) } else { (p2, p) };
-    Some([
-        Half { left: Edge { start: p1, end: left }, right: Edge { start: p1, end: right } },
-        Half { left: Edge { start: left, end: p3 }, right: Edge { start: right, end: p3 } },
-    ])
+    let is_middle_right = p2.x > p.x;
+    let (left, right) = if is_middle_right { (p, p2) } else { (p2, p) };
+    let [lower, upper] = halves(p1, left, right, p3);
+    Some(Split { lower, upper, order, t, is_middle_right })
+}
+
+/// The lower half ends where the upper one starts.
+#[inline]
+pub(crate) fn halves<T: Copy>(low: T, left: T, right: T, high: T) -> [Half<T>; 2] {
+    [
+        Half { left: Edge { start: low, end: left }, right: Edge { start: low, end: right } },
+        Half { left: Edge { start: left, end: high }, right: Edge { start: right, end: high } },
+    ]
 }
 // ANCHOR_END: split
 
-/// The corners from bottom to top; those of equal height keep their order.
-fn sorted_by_height<A: Copy>([mut low, mut middle, mut high]: [Corner<A>; 3]) -> [Corner<A>; 3] {
-    let sort = |a: &mut Corner<A>, b: &mut Corner<A>| {
-        if a.position.y > b.position.y {
-            std::mem::swap(a, b);
+/// The numbers of the vertices from bottom to top; those of equal height keep their order.
+#[inline]
+fn by_height(triangle: [DVec2; 3]) -> [usize; 3] {
+    let mut order = [0, 1, 2];
+    for (i, j) in [(0, 1), (1, 2), (0, 1)] {
+        if triangle[order[i]].y > triangle[order[j]].y {
+            order.swap(i, j);
         }
-    };
-    sort(&mut low, &mut middle);
-    sort(&mut middle, &mut high);
-    sort(&mut low, &mut middle);
-    [low, middle, high]
+    }
+    order
 }
 
-impl<A: Copy> Half<A> {
-    // ANCHOR: walk
-    /// Walks up both sides of the half, a row at a time, and emits the span between them, within `window`.
-    ///
-    /// Rows run from trunc(y) of the lower end while y is below the upper end. `payload` says what is stepped along an
-    /// edge: its values at the edge's start and end. Source: book, sections 2.2 and 3.2.4.
-    pub fn walk<P: Payload>(
-        &self,
-        payload: impl Fn(&Edge<A>) -> [P; 2],
-        walk: Walk,
-        window: impl Into<Window>,
-        mut emit: impl FnMut(Span<P>),
-    ) {
-        let window = window.into();
-        let ends = |edge: &Edge<A>| [edge.start.position, edge.end.position];
-        window.tell(|probe| probe.half(ends(&self.left), ends(&self.right), walk));
-        self.walk_rows(payload, walk, window.rect, &mut emit);
-        window.tell(|probe| probe.done());
+/// Half of a triangle that is about to be filled: what [`Half::spans`] announces to observers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HalfFill {
+    /// The half.
+    pub half: Half,
+    /// How its rows are walked.
+    pub walk: Walk,
+}
+
+impl Half {
+    /// Emits the spans of the half, from bottom to top.
+    pub fn spans(&self, walk: Walk, scissor: impl Into<Scissor>, emit: impl FnMut(Span)) {
+        let scissor = scissor.into();
+        scissor.report(|observer| observer.begun(&HalfFill { half: *self, walk }));
+        self.walk(walk.edges, scissor.rect, emit);
+        scissor.report(|observer| observer.done());
     }
 
-    fn walk_rows<P: Payload>(
-        &self,
-        payload: impl Fn(&Edge<A>) -> [P; 2],
-        walk: Walk,
-        window: Rect,
-        mut emit: impl FnMut(Span<P>),
-    ) {
-        let mut left = Side::new(&self.left, payload(&self.left));
-        let mut right = Side::new(&self.right, payload(&self.right));
-        let end = self.left.end.position.y.min(f64::from(window.top));
-        let mut y = self.left.start.position.y.trunc();
+    // ANCHOR: walk
+    /// Walks up both sides of the half, a row at a time, and emits the span between them.
+    ///
+    /// Rows run from trunc(y) of the lower end while y is below the upper end. Source: book, section 2.2.
+    #[inline]
+    pub(crate) fn walk(&self, edges: EdgeWalk, scissor: Rect, mut emit: impl FnMut(Span)) {
+        let (mut left, mut right) = (Side::new(&self.left), Side::new(&self.right));
+        let top = self.left.end.y.min(f64::from(scissor.top));
+        let mut y = self.left.start.y.trunc();
 
-        // What lies below the window is passed over in one stride.
-        let skipped = f64::from(window.bottom) - y;
+        // What lies below the scissor is passed over in one stride.
+        let skipped = f64::from(scissor.bottom) - y;
         if skipped > 0.0 {
-            left.step(skipped, walk.limit);
-            right.step(skipped, walk.limit);
-            y = f64::from(window.bottom);
+            left.step(skipped);
+            right.step(skipped);
+            y = f64::from(scissor.bottom);
         }
 
-        while y < end {
-            if walk.edges == EdgeWalk::Clamped {
+        while y < top {
+            if edges == EdgeWalk::Clamped {
                 left.clamp();
                 right.clamp();
             }
-            emit(Span {
-                y: y as i32,
-                ends: [left.x, right.x],
-                payload: [left.value, right.value],
-                walk,
-                window,
-            });
-            left.step(1.0, walk.limit);
-            right.step(1.0, walk.limit);
+            emit(Span { y: y as i32, start: left.x, end: right.x, scissor });
+            left.step(1.0);
+            right.step(1.0);
             y += 1.0;
         }
     }
     // ANCHOR_END: walk
 }
 
-/// One side of a half while the walk goes up: its x and its payload at the running row.
-struct Side<P> {
+// ANCHOR: side
+/// One side of a half while the walk goes up: its x at the running row.
+struct Side {
     x: f64,
-    x_slope: f64,
+    slope: f64,
     x_end: f64,
-    value: P,
-    value_slope: P,
-    value_ends: [P; 2],
 }
 
-impl<P: Payload> Side<P> {
-    fn new<A>(edge: &Edge<A>, value_ends: [P; 2]) -> Self {
-        let [start, end] = [edge.start.position, edge.end.position];
-        // Both differences are taken backwards, as in the book: on a level edge that decides the sign of an infinite
-        // slope, and with it what the clamp does there.
-        let height = start.y - end.y;
-        Self {
-            x: start.x,
-            x_slope: f64::slope(end.x, start.x, height),
-            x_end: end.x,
-            value: value_ends[0],
-            value_slope: P::slope(value_ends[1], value_ends[0], height),
-            value_ends,
-        }
+impl Side {
+    fn new(edge: &Edge) -> Self {
+        let slope = (edge.start.x - edge.end.x) / edge.rise();
+        Self { x: edge.start.x, slope, x_end: edge.end.x }
     }
 
+    /// x does not pass the end of its edge.
     fn clamp(&mut self) {
-        if self.x_slope < 0.0 {
+        if self.slope < 0.0 {
             self.x = self.x.max(self.x_end);
-        } else if self.x_slope > 0.0 {
+        } else if self.slope > 0.0 {
             self.x = self.x.min(self.x_end);
         }
     }
 
-    fn step(&mut self, rows: f64, limit: StepLimit) {
-        self.x = self.x.stepped(self.x_slope, rows);
-        self.value = self.value.stepped(self.value_slope, rows);
-        if limit != StepLimit::Overrun {
-            self.value = self.value.limited(self.value_ends[0], self.value_ends[1], limit);
-        }
+    fn step(&mut self, rows: f64) {
+        self.x += self.slope * rows;
+    }
+}
+// ANCHOR_END: side
+
+impl Edge {
+    /// How much lower the start is than the end, negative or 0.
+    ///
+    /// Slopes are quotients of two differences that are both taken backwards, as in the book: on a horizontal edge that
+    /// decides the sign of an infinite slope, and with it what the clamp does there.
+    #[inline]
+    pub(crate) fn rise(&self) -> f64 {
+        self.start.y - self.end.y
     }
 }
 
-/// The pixels of one row that a triangle covers, with the payload at both ends.
-#[derive(Clone, Copy, Debug)]
-pub struct Span<P> {
+/// The pixels of one row that a triangle covers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Span {
     /// The row.
     pub y: i32,
-    /// Where the row begins and where it ends: x, in pixels.
-    pub ends: [f64; 2],
-    /// The payload there.
-    pub payload: [P; 2],
-    walk: Walk,
-    window: Rect,
+    /// Where it begins: x, in pixels.
+    pub start: f64,
+    /// Where it ends.
+    pub end: f64,
+    scissor: Rect,
 }
 
-impl<P> Span<P> {
+impl Span {
     // ANCHOR: span
-    /// The columns from trunc(start) while x ≤ end, within the window.
+    /// The columns from trunc(start) while x ≤ end, within the scissor.
     #[must_use]
     pub fn columns(&self) -> Range<i32> {
-        let [start, end] = self.ends;
-        let first = (start as i32).max(self.window.left);
-        let last = (end.floor() as i32).min(self.window.right - 1);
-        if start <= end && first <= last { first..last + 1 } else { 0..0 }
-    }
-
-    /// Steps a payload along the row, from its value at the start to its value at the end, a pixel at a time.
-    pub fn step<Q: Payload>(&self, from: Q, to: Q, mut emit: impl FnMut(i32, Q)) {
-        let columns = self.columns();
-        let [start, end] = self.ends;
-        let slope = Q::slope(from, to, end - start);
-        let skipped = f64::from(columns.start) - start.trunc();
-        let mut value = if skipped > 0.0 { from.stepped(slope, skipped) } else { from };
-        for x in columns {
-            if self.walk.limit == StepLimit::Everywhere {
-                value = value.limited(from, to, StepLimit::Everywhere);
-            }
-            emit(x, value);
-            value = value.stepped(slope, 1.0);
-        }
+        let first = (self.start as i32).max(self.scissor.left);
+        let last = (self.end.floor() as i32).min(self.scissor.right - 1);
+        if self.start <= self.end && first <= last { first..last + 1 } else { 0..0 }
     }
     // ANCHOR_END: span
 }
@@ -368,16 +295,9 @@ pub(crate) mod tests {
         counts.iter().rev().map(|row| row.iter().map(digit).collect::<String>() + "\n").collect()
     }
 
-    fn walk_all(corners: [DVec2; 3], walk: Walk, window: Rect, mut emit: impl FnMut(Span<()>)) {
-        let corners = corners.map(|position| Corner { position, attributes: () });
-        for half in split(corners, |(), (), _| ()).into_iter().flatten() {
-            half.walk(|_| [(), ()], walk, window, &mut emit);
-        }
-    }
-
     fn drawn(corners: [(f64, f64); 3], walk: Walk) -> String {
         let mut counts = [[0; 12]; 7];
-        walk_all(corners.map(DVec2::from), walk, Rect::sized(12, 7), |span| {
+        spans(corners.map(DVec2::from), walk, Rect::sized(12, 7), |span| {
             for x in span.columns() {
                 counts[span.y as usize][x as usize] += 1;
             }
@@ -386,7 +306,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn triangle_with_a_level_base() {
+    fn triangle_with_a_horizontal_base() {
         let expected = "\
             ............\n\
             ............\n\
@@ -413,7 +333,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn nearly_level_edges_overshoot_unless_clamped() {
+    fn nearly_horizontal_edges_overshoot_unless_clamped() {
         // Rows 1 and 2, and only 2/1000 of a pixel between them: one step of y moves x by more than 1000.
         // The row of a fractional middle vertex belongs to both halves, hence the 2s.
         let corners = [(5.0, 1.999), (3.0, 2.001), (7.5, 2.0011)];
@@ -456,7 +376,7 @@ pub(crate) mod tests {
     fn huge_triangles_end() {
         let far = 1e30;
         let mut rows = 0;
-        walk_all(
+        spans(
             [dvec2(-far, -far), dvec2(far, -far), dvec2(0.0, far)],
             Walk::default(),
             Rect::sized(1, 1),
@@ -474,34 +394,17 @@ pub(crate) mod tests {
 
     proptest! {
         #[test]
-        fn spans_stay_inside_the_bounding_box_and_the_window(a in point(), b in point(), c in point()) {
+        fn spans_stay_inside_the_bounding_box_and_the_scissor(a in point(), b in point(), c in point()) {
             let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-            let window = Rect::sized(40, 30);
-            walk_all([a, b, c], Walk::default(), window, |span| {
-                assert!(window.rows().contains(&span.y));
+            let scissor = Rect::sized(40, 30);
+            spans([a, b, c], Walk::default(), scissor, |span| {
+                assert!(scissor.rows().contains(&span.y));
                 assert!(f64::from(span.y) >= low.y.trunc() && f64::from(span.y) < high.y);
                 for x in span.columns() {
-                    assert!(window.columns().contains(&x));
+                    assert!(scissor.columns().contains(&x));
                     assert!(f64::from(x) >= low.x.trunc() && f64::from(x) <= high.x);
                 }
             });
-        }
-
-        #[test]
-        fn payload_limited_everywhere_stays_between_its_ends(
-            a in point(), b in point(), c in point(), values in prop::array::uniform3(-5.0..5.0),
-        ) {
-            let corners = [Corner { position: a, attributes: values[0] }, Corner { position: b, attributes: values[1] },
-                Corner { position: c, attributes: values[2] }];
-            let (low, high) = (values.iter().copied().fold(f64::MAX, f64::min), values.iter().copied().fold(f64::MIN, f64::max));
-            let walk = Walk { limit: StepLimit::Everywhere, ..Walk::default() };
-            for half in split(corners, |a, b, t| (b - a) * t + a).into_iter().flatten() {
-                half.walk(|edge| [edge.start.attributes, edge.end.attributes], walk, Rect::sized(40, 30), |span| {
-                    span.step(span.payload[0], span.payload[1], |_, value| {
-                        assert!(value >= low - 1e-9 && value <= high + 1e-9, "{value} is not in {low}..{high}");
-                    });
-                });
-            }
         }
     }
 }

@@ -31,6 +31,9 @@
 //! assert_eq!(shader.fragment([0.5_f64]).color.channels(), [127.5, 127.5, 127.5, 1.0]);
 //! ```
 
+use std::fmt;
+use std::marker::PhantomData;
+
 use glam::DVec3;
 
 use crate::clip::ClipVertex;
@@ -66,6 +69,61 @@ pub trait Shader<const N: usize>: Sync {
     #[inline]
     fn fragment_with_derivatives<R: Real>(&self, varyings: [R; N], _: Derivatives<R, N>) -> Shaded<R> {
         self.fragment(varyings)
+    }
+}
+
+/// A shader made of two functions: see [`from_fn`].
+#[derive(Clone, Copy)]
+pub struct FnShader<A, V, F> {
+    vertex: V,
+    fragment: F,
+    attributes: PhantomData<fn(&A)>,
+}
+
+impl<A, V, F> fmt::Debug for FnShader<A, V, F> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a shader made of two functions")
+    }
+}
+
+/// A shader made of two functions: attributes → clip space and varyings, and varyings → red, green and blue in 0..=255.
+///
+/// The simplest way to a picture. The fragment function is written for `f64` and takes one fragment at a time, also where
+/// eight could be shaded at once: what is to be fast implements [`Shader`].
+///
+/// ```
+/// use glam::DVec3;
+/// use rasterbook::{ClipVertex, Shader, shader};
+///
+/// let brightness = shader::from_fn(
+///     |view: &DVec3| ClipVertex { position: view.extend(view.z), varyings: [view.y] },
+///     |[height]: [f64; 1]| [height * 255.0; 3],
+/// );
+/// assert_eq!(brightness.fragment([0.5_f64]).color.channels(), [127.5, 127.5, 127.5, 1.0]);
+/// ```
+pub const fn from_fn<A, V, F, const N: usize>(vertex: V, fragment: F) -> FnShader<A, V, F>
+where
+    A: Sync,
+    V: Fn(&A) -> ClipVertex<N> + Sync,
+    F: Fn([f64; N]) -> [f64; 3] + Sync,
+{
+    FnShader { vertex, fragment, attributes: PhantomData }
+}
+
+impl<A, V, F, const N: usize> Shader<N> for FnShader<A, V, F>
+where
+    A: Sync,
+    V: Fn(&A) -> ClipVertex<N> + Sync,
+    F: Fn([f64; N]) -> [f64; 3] + Sync,
+{
+    type Attributes = A;
+
+    fn vertex(&self, attributes: &A) -> ClipVertex<N> {
+        (self.vertex)(attributes)
+    }
+
+    fn fragment<R: Real>(&self, varyings: [R; N]) -> Shaded<R> {
+        Shaded::opaque(R::map_all(varyings, &self.fragment))
     }
 }
 

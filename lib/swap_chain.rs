@@ -15,9 +15,9 @@
 //! assert_eq!(screen.front().get(1, 1), Some(Color::RED));
 //! ```
 
-use crate::Framebuffer;
+use crate::framebuffer::Framebuffer;
 
-/// A screen's front buffer, which is seen; the back buffer, which is drawn into, is whoever draws's own. Book, section
+/// A screen's front buffer, which is seen; the back buffer, which is drawn into, belongs to the one who draws. Book, section
 /// 9.4.2, Figure 9-9.
 #[derive(Clone, Debug)]
 pub struct SwapChain {
@@ -50,7 +50,7 @@ impl SwapChain {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Color;
+    use crate::color::Color;
 
     #[test]
     fn drawing_is_not_seen_until_presented() {

@@ -15,7 +15,7 @@
 
 use std::sync::Arc;
 
-use crate::Color;
+use crate::color::Color;
 use crate::interpolate::linear;
 use crate::real::Real;
 
@@ -159,7 +159,7 @@ impl Texture {
         let [width, height] = self.size();
         let column = mode.index(u, width, R::from(self.last_column));
         let row = mode.index(v, height, R::from(self.last_row));
-        R::look_up_color(column, row, self.row_bits, &self.texels)
+        R::gather_color(column, row, self.row_bits, &self.texels)
     }
     // ANCHOR_END: nearest
 
@@ -168,7 +168,7 @@ impl Texture {
     #[inline]
     pub fn bilinear<R: Real>(&self, uv: [R; 2], mode: AddressMode) -> [R; 3] {
         bilinear(uv, self.size(), mode, |column, row| {
-            R::channels(R::look_up_color(column, row, self.row_bits, &self.texels))
+            R::channels(R::gather_color(column, row, self.row_bits, &self.texels))
         })
     }
 

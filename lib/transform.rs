@@ -16,7 +16,7 @@
 
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 
-use crate::Rect;
+use crate::rect::Rect;
 
 // ANCHOR: perspective
 /// Perspective projection onto the plane z = `near`: camera space → homogeneous coordinates (n x, n y, n z, z).

@@ -29,7 +29,7 @@ use crate::real::{Mask, Real};
 ///         α′/ωa + β′/ωb + γ′/ωc                      ω     ωa   ωb   ωc
 /// ```
 ///
-/// Where all ω are equal, as under an orthographic projection, nothing changes. Where that cannot be reckoned, because
+/// Where all ω are equal, as under an orthographic projection, nothing changes. Where that cannot be computed, because
 /// an ω or the sum below the line is zero, the weights stay as they are. Source: first note, formulas 4 to 7.
 #[must_use]
 pub fn perspective_weights<R: Real>(weights: [R; 3], w: [R; 3]) -> [R; 3] {
@@ -63,10 +63,10 @@ pub fn weight_gradients<R: Real>([a, b, c]: [DVec2; 3]) -> WeightGradients<R> {
 }
 
 // ANCHOR: triangle_varyings
-/// What changes evenly on the screen: what a corner carries, divided by ω; the same at a point between corners; or how
+/// What changes linearly on the screen: what a corner carries, divided by ω; the same at a point between corners; or how
 /// much all of it changes from there to another point.
-#[derive(Clone, Copy, Debug)]
-pub struct EvenVaryings<R, const N: usize> {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinearVaryings<R, const N: usize> {
     /// 1/ω; for [`Interpolation::Affine`] ω itself.
     pub distance: R,
     /// The depth.
@@ -75,7 +75,7 @@ pub struct EvenVaryings<R, const N: usize> {
     pub values: [R; N],
 }
 
-impl<R: Real, const N: usize> EvenVaryings<R, N> {
+impl<R: Real, const N: usize> LinearVaryings<R, N> {
     /// At a vertex: divides what is to be interpolated by ω. All triangles that meet there can share it.
     #[must_use]
     #[inline]
@@ -108,7 +108,7 @@ impl<R: Real, const N: usize> EvenVaryings<R, N> {
         self.with(change, |value, change| value + change * times)
     }
 
-    /// Multiplies by ω again: what was interpolated evenly becomes ω and values.
+    /// Multiplies by ω again: what was interpolated linearly becomes ω and values.
     #[must_use]
     #[inline]
     pub fn multiplied(self, interpolation: Interpolation) -> Projected<R, N> {
@@ -121,7 +121,7 @@ impl<R: Real, const N: usize> EvenVaryings<R, N> {
         }
     }
 
-    /// How the varyings change at a point, if this is how they change evenly from there to the next pixel.
+    /// How the varyings change at a point, if this is how they change linearly from there to the next pixel.
     ///
     /// From V = (V/ω) / (1/ω) by the quotient rule: ∂V = ω (∂(V/ω) − V ∂(1/ω)).
     #[must_use]
@@ -137,11 +137,11 @@ impl<R: Real, const N: usize> EvenVaryings<R, N> {
 }
 
 /// What the corners of a triangle carry, made ready for weights: its value at the first, and the ways to the other two.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TriangleVaryings<R, const N: usize> {
-    first: EvenVaryings<R, N>,
-    to_second: EvenVaryings<R, N>,
-    to_third: EvenVaryings<R, N>,
+    first: LinearVaryings<R, N>,
+    to_second: LinearVaryings<R, N>,
+    to_third: LinearVaryings<R, N>,
     interpolation: Interpolation,
 }
 
@@ -151,22 +151,22 @@ impl<R: Real, const N: usize> TriangleVaryings<R, N> {
     #[inline]
     pub fn new(corners: &[NdcVertex<N>; 3], interpolation: Interpolation) -> Self {
         let [first, second, third] =
-            corners.each_ref().map(|vertex| EvenVaryings::new(vertex, interpolation));
-        let way = |corner: EvenVaryings<R, N>| corner.with(&first, |corner, first| corner - first);
+            corners.each_ref().map(|vertex| LinearVaryings::new(vertex, interpolation));
+        let way = |corner: LinearVaryings<R, N>| corner.with(&first, |corner, first| corner - first);
         Self { first, to_second: way(second), to_third: way(third), interpolation }
     }
 
-    /// What changes evenly, where the second and the third corner have these weights.
+    /// What changes linearly, where the second and the third corner have these weights.
     #[must_use]
     #[inline]
-    pub fn even_at(&self, [second, third]: [R; 2]) -> EvenVaryings<R, N> {
+    pub fn linear_at(&self, [second, third]: [R; 2]) -> LinearVaryings<R, N> {
         self.first.moved(&self.to_second, second).moved(&self.to_third, third)
     }
 
     /// How much it changes where the weights of the second and the third corner change by so much.
     #[must_use]
     #[inline]
-    pub fn change(&self, [second, third]: [R; 2]) -> EvenVaryings<R, N> {
+    pub fn change(&self, [second, third]: [R; 2]) -> LinearVaryings<R, N> {
         self.to_second.with(&self.to_third, |to_second, to_third| to_second * second + to_third * third)
     }
 
@@ -174,7 +174,7 @@ impl<R: Real, const N: usize> TriangleVaryings<R, N> {
     #[must_use]
     #[inline]
     pub fn at(&self, weights: [R; 2]) -> Projected<R, N> {
-        self.even_at(weights).multiplied(self.interpolation)
+        self.linear_at(weights).multiplied(self.interpolation)
     }
 
     /// How the varyings change from pixel to pixel at a point.

@@ -4,7 +4,7 @@
 mod chapters;
 
 use chapters::{CHAPTERS, variant};
-use rasterbook::program::Mistake;
+use rasterbook::figure::Mistake;
 use rasterbook::{Color, Framebuffer};
 
 /// The mistakes that a test below looks for.
@@ -31,12 +31,12 @@ fn every_mistake_has_a_test_and_a_real_remedy() {
         for variant in chapter.variants {
             match variant.mistake {
                 Mistake::No => assert!(!TESTED.contains(&variant.name), "{} is no mistake", variant.name),
-                Mistake::MendedBy(remedy) => {
+                Mistake::RemediedBy(remedy) => {
                     let remedy = chapter.find(remedy).expect("the remedy is a variant of the same chapter");
                     assert_eq!(remedy.mistake, Mistake::No);
                     assert_eq!(remedy.size, variant.size, "comparable");
                 }
-                Mistake::Unmended => {}
+                Mistake::WithoutRemedy => {}
             }
             let is_tested = variant.mistake == Mistake::No || TESTED.contains(&variant.name);
             assert!(is_tested, "no test here looks for the artefact of {} {}", chapter.name, variant.name);
@@ -60,7 +60,7 @@ const GREEN: Color = Color::rgb(80, 180, 90);
 fn draw(chapter: &str, name: &str) -> Framebuffer {
     let variant = variant(chapter, name);
     let subject = variant.subject().expect("assets");
-    variant.draw(&variant.sitting(subject.as_ref()))
+    variant.draw(&variant.options(subject.as_ref()))
 }
 
 fn count(picture: &Framebuffer, is_meant: impl Fn(i32, i32, Color) -> bool) -> usize {

@@ -4,39 +4,30 @@ use std::cell::RefCell;
 use std::collections::BTreeSet;
 
 use glam::{DVec2, DVec3, DVec4, dvec2, dvec3, dvec4};
-use rasterbook::clip::{ClipTest, ClipVertex, ClipVolume, DepthRange, Plane, clip_triangle, fan};
+use rasterbook::clip::{ClipTest, ClipVolume, DepthRange, Plane, clip_triangle, fan};
 use rasterbook::cull::CullMode;
-use rasterbook::depth::{DepthBuffer, DepthTest, Target};
-use rasterbook::interpolate::{Interpolation, Projected, step_values};
+use rasterbook::depth::{DepthBuffer, DepthTest};
+use rasterbook::interpolate::{Interpolation, Projected, ScreenVertex, step_values};
 use rasterbook::line::{StepAxis, dda};
 use rasterbook::merge::Merge;
-use rasterbook::mesh::Mesh;
-use rasterbook::pipeline::{RenderState, draw};
-use rasterbook::probe::{FragmentEvent, Probe, Vertex};
-use rasterbook::raster::Scanline;
-use rasterbook::real::Real;
-use rasterbook::scanline::{Corner, EdgeWalk, Payload, StepLimit, Walk, split};
-use rasterbook::shader::{Shaded, Shader};
+use rasterbook::observer::Observer;
+use rasterbook::payload::Payload;
+use rasterbook::probe::{Fragment, Piece, Probe};
+use rasterbook::scanline::{self, EdgeWalk, StepLimit, Walk};
 use rasterbook::texture::AddressMode;
 use rasterbook::transform::{Frustum, perspective, perspective_divide};
-use rasterbook::{Color, Rect};
+use rasterbook::{
+    ClipVertex, Color, Mesh, Pixel, Real, Rect, RenderState, Scanline, Shaded, Shader, Target, draw,
+};
 
-const WINDOW: Rect = Rect::sized(400, 400);
+const SCISSOR: Rect = Rect::sized(400, 400);
 
 /// The spans of a triangle: row, first column, column after the last.
-fn spans(corners: [(f64, f64); 3]) -> Vec<(i32, i32, i32)> {
-    let corners = corners.map(|position| Corner { position: DVec2::from(position), attributes: () });
+fn spans(triangle: [(f64, f64); 3]) -> Vec<(i32, i32, i32)> {
     let mut spans = Vec::new();
-    for half in split(corners, |(), (), _| ()).into_iter().flatten() {
-        half.walk(
-            |_| [(), ()],
-            Walk::default(),
-            WINDOW,
-            |span| {
-                spans.push((span.y, span.columns().start, span.columns().end));
-            },
-        );
-    }
+    scanline::spans(triangle.map(DVec2::from), Walk::default(), SCISSOR, |span| {
+        spans.push((span.y, span.columns().start, span.columns().end));
+    });
     spans
 }
 
@@ -86,10 +77,10 @@ fn the_row_of_a_fractional_middle_corner_is_drawn_twice() {
 
 #[test]
 fn the_first_pixel_has_the_value_of_the_exact_start() {
-    let corners = [(0.5, 0.0), (8.5, 0.0), (0.5, 8.0)]
-        .map(|(x, y)| Corner { position: dvec2(x, y), attributes: [x, y] });
+    let triangle = [(0.5, 0.0), (8.5, 0.0), (0.5, 8.0)]
+        .map(|(x, y)| ScreenVertex { position: dvec2(x, y), varyings: [x, y] });
     let mut emitted = Vec::new();
-    step_values(corners, Walk::default(), WINDOW, |x, y, values| emitted.push((x, y, values)));
+    step_values(triangle, Walk::default(), SCISSOR, |x, y, values| emitted.push((x, y, values)));
     assert_eq!(emitted[..2], [(0, 0, [0.5, 0.0]), (1, 0, [1.5, 0.0])]);
 }
 
@@ -97,7 +88,7 @@ fn the_first_pixel_has_the_value_of_the_exact_start() {
 fn the_end_point_of_a_line_is_not_drawn() {
     let pixels = |a: (f64, f64), b: (f64, f64)| {
         let mut pixels = Vec::new();
-        dda(a.into(), b.into(), StepAxis::Longer, WINDOW, |x, y| pixels.push((x, y)));
+        dda(a.into(), b.into(), StepAxis::Longer, SCISSOR, |x, y| pixels.push((x, y)));
         pixels
     };
     let line = pixels((100.0, 0.0), (100.0, 300.0));
@@ -176,16 +167,18 @@ impl Shader<3> for Flat {
     }
 }
 
-/// Hears the pixel and the color of every fragment, and how many pieces were culled.
+/// Records the pixel and the color of every fragment, and how many pieces were culled.
 #[derive(Debug, Default)]
-struct Heard {
+struct Recorder {
     fragments: RefCell<Vec<(i32, i32, [f64; 4])>>,
     pieces: RefCell<usize>,
     culled: RefCell<usize>,
 }
 
-impl Probe for Heard {
-    fn piece(&self, _: [Vertex<'_>; 3], _: f64) {
+impl Observer for Recorder {}
+
+impl Probe for Recorder {
+    fn piece(&self, _: &dyn Fn() -> Piece) {
         *self.pieces.borrow_mut() += 1;
     }
 
@@ -193,8 +186,8 @@ impl Probe for Heard {
         *self.culled.borrow_mut() += 1;
     }
 
-    fn fragment(&self, event: &FragmentEvent<'_>) {
-        self.fragments.borrow_mut().push((event.x, event.y, event.color));
+    fn fragment(&self, (x, y): Pixel, fragment: &dyn Fn() -> Fragment) {
+        self.fragments.borrow_mut().push((x, y, fragment().color));
     }
 }
 
@@ -203,15 +196,15 @@ const GREEN: [f64; 3] = [0.0, 255.0, 0.0];
 
 type FlatTriangle = ([(f64, f64); 3], [f64; 3]);
 
-fn listen(triangles: &[FlatTriangle], state: &RenderState) -> (Target, Heard) {
+fn record(triangles: &[FlatTriangle], state: &RenderState) -> (Target, Recorder) {
     let corners =
         triangles.iter().flat_map(|(corners, color)| corners.map(|(x, y)| (dvec4(x, y, 0.0, 1.0), *color)));
     let mesh = Mesh::unindexed(corners.collect()).expect("whole triangles");
     let mut target = Target::new(9, 9);
     target.clear(state.clear_color, state.clear_depth);
-    let heard = Heard::default();
-    draw(&mesh, &Flat, state, &Scanline, &mut target, &heard);
-    (target, heard)
+    let recorder = Recorder::default();
+    draw(&mesh, &Flat, state, &Scanline, &mut target, &recorder);
+    (target, recorder)
 }
 
 const TRIANGLE: [(f64, f64); 3] = [(-0.75, -0.75), (0.75, -0.75), (-0.75, 0.75)];
@@ -221,7 +214,7 @@ const REVERSED: [(f64, f64); 3] = [(-0.75, -0.75), (-0.75, 0.75), (0.75, -0.75)]
 fn the_front_runs_counter_clockwise() {
     let drawn = |corners, cull| {
         let state = RenderState { cull, ..RenderState::default() };
-        !listen(&[(corners, RED)], &state).1.fragments.borrow().is_empty()
+        !record(&[(corners, RED)], &state).1.fragments.borrow().is_empty()
     };
     assert!(drawn(TRIANGLE, CullMode::Back) && !drawn(REVERSED, CullMode::Back));
     assert_eq!(RenderState::default().cull, CullMode::None);
@@ -235,9 +228,9 @@ fn a_triangle_without_area_is_always_left_out() {
         [[(-0.5, -0.5), (0.0, 0.0), (0.5, 0.5)], [(0.0, 0.0), (tiny, 0.0), (0.0, tiny)], [(0.1, 0.1); 3]]
     {
         for cull in [CullMode::None, CullMode::Back, CullMode::Front] {
-            let (_, heard) = listen(&[(corners, RED)], &RenderState { cull, ..RenderState::default() });
-            assert!(heard.fragments.borrow().is_empty(), "{corners:?}");
-            assert_eq!((*heard.pieces.borrow(), *heard.culled.borrow()), (1, 1));
+            let (_, recorder) = record(&[(corners, RED)], &RenderState { cull, ..RenderState::default() });
+            assert!(recorder.fragments.borrow().is_empty(), "{corners:?}");
+            assert_eq!((*recorder.pieces.borrow(), *recorder.culled.borrow()), (1, 1));
         }
     }
 }
@@ -247,7 +240,7 @@ fn of_equal_depths_the_later_is_seen() {
     let color = |depth_test| {
         let merge = Merge { depth_test, ..Merge::default() };
         let (target, _) =
-            listen(&[(TRIANGLE, RED), (TRIANGLE, GREEN)], &RenderState { merge, ..RenderState::default() });
+            record(&[(TRIANGLE, RED), (TRIANGLE, GREEN)], &RenderState { merge, ..RenderState::default() });
         target.color.get(2, 2)
     };
     assert_eq!(color(DepthTest::LessOrEqual), Some(Color::GREEN));
@@ -263,8 +256,8 @@ fn a_target_is_cleared_to_black_and_the_far_plane() {
 
 #[test]
 fn fragments_arrive_in_the_order_of_the_triangles() {
-    let (_, heard) = listen(&[(TRIANGLE, RED), (REVERSED, GREEN)], &RenderState::default());
-    let fragments = heard.fragments.borrow();
+    let (_, recorder) = record(&[(TRIANGLE, RED), (REVERSED, GREEN)], &RenderState::default());
+    let fragments = recorder.fragments.borrow();
     let first_green = fragments.iter().position(|fragment| fragment.2[1] == 255.0).expect("a green one");
     assert!(fragments[..first_green].iter().all(|fragment| fragment.2[0] == 255.0));
     assert!(fragments[first_green..].iter().all(|fragment| fragment.2[1] == 255.0));
@@ -273,8 +266,8 @@ fn fragments_arrive_in_the_order_of_the_triangles() {
     assert!(places.is_sorted());
 
     // A triangle that is cut at the right border: its pieces come in the order of the fan.
-    let (_, heard) = listen(&[([(-0.5, -0.5), (2.0, 0.0), (-0.5, 0.5)], RED)], &RenderState::default());
-    assert_eq!(*heard.pieces.borrow(), 2);
+    let (_, recorder) = record(&[([(-0.5, -0.5), (2.0, 0.0), (-0.5, 0.5)], RED)], &RenderState::default());
+    assert_eq!(*recorder.pieces.borrow(), 2);
 }
 
 // ---- Derivations that the pages give ------------------------------------------------------------------------------

@@ -8,8 +8,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use chapters::CHAPTERS;
-use rasterbook::program::picture::difference;
-use rasterbook::program::{Mistake, Variant};
+use rasterbook::figure::picture::difference;
+use rasterbook::figure::{Mistake, Variant};
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -136,10 +136,10 @@ fn pages_count_the_pixels_in_which_mistake_and_remedy_differ() {
     for (chapter, _) in CHAPTERS {
         let page = read(&root().join(format!("docs/src/{}.md", chapter.name)));
         for variant in chapter.variants {
-            let Mistake::MendedBy(remedy) = variant.mistake else { continue };
+            let Mistake::RemediedBy(remedy) = variant.mistake else { continue };
             let picture = |variant: &Variant| {
                 let subject = variant.subject().expect("assets");
-                variant.draw(&variant.sitting(subject.as_ref()))
+                variant.draw(&variant.options(subject.as_ref()))
             };
             let remedy = chapter.find(remedy).expect("a variant");
             let (_, count) = difference(&picture(variant), &picture(remedy)).expect("of one size");

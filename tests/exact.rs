@@ -6,23 +6,21 @@ use std::f64::consts::TAU;
 use glam::{DVec2, DVec4, dvec2, dvec4};
 use proptest::prelude::*;
 use rasterbook::area::Winding;
-use rasterbook::clip::{
-    ClipTest, ClipVertex, ClipVolume, MAX_VERTICES, NdcVertex, Plane, clip_triangle, fan,
-};
+use rasterbook::clip::{ClipTest, ClipVolume, MAX_VERTICES, NdcVertex, Plane, clip_triangle, fan};
 use rasterbook::cull::CullMode;
-use rasterbook::depth::{DepthTest, Target};
-use rasterbook::edge::{Coverage, SUBPIXELS, Subpixel, center, snap};
+use rasterbook::depth::DepthTest;
 use rasterbook::exact::Exact;
+use rasterbook::exact::edge::{Coverage, SUBPIXELS, Subpixel, center, snap};
 use rasterbook::interpolate::Interpolation;
 use rasterbook::merge::{Blend, Merge};
-use rasterbook::mesh::Mesh;
-use rasterbook::pipeline::{RenderState, draw};
-use rasterbook::probe::{FragmentEvent, Probe, Silent};
+use rasterbook::observer::Observer;
+use rasterbook::probe::{Fragment, Probe};
 use rasterbook::raster::Rasterizer;
-use rasterbook::real::{Real, Scalar};
-use rasterbook::shader::{Shaded, Shader};
+use rasterbook::real::Scalar;
 use rasterbook::varyings::TriangleVaryings;
-use rasterbook::{Color, Rect};
+use rasterbook::{
+    ClipVertex, Color, Mesh, Pixel, Real, Rect, RenderState, Shaded, Shader, Silent, Target, draw,
+};
 
 // ---- An oracle -----------------------------------------------------------------------------------------------------
 
@@ -146,7 +144,7 @@ proptest! {
             let step = varyings.change(coverage.weight_step());
             for y in 0..WINDOW.top {
                 let columns = coverage.covered_columns(WINDOW.columns(), y);
-                let start = varyings.even_at(coverage.weights(coverage.edge_values(center(columns.start, y))));
+                let start = varyings.linear_at(coverage.weights(coverage.edge_values(center(columns.start, y))));
                 for (count, x) in columns.enumerate() {
                     let even = start.moved(&step, R::of(count as f64));
                     let value: f64 = even.multiplied(Interpolation::PerspectiveCorrect).values[0].into();
@@ -240,9 +238,11 @@ impl Counter {
     }
 }
 
+impl Observer for Counter {}
+
 impl Probe for Counter {
-    fn fragment(&self, event: &FragmentEvent<'_>) {
-        self.0.borrow_mut()[self.1.index(event.x, event.y).expect("inside")] += 1;
+    fn fragment(&self, (x, y): Pixel, _: &dyn Fn() -> Fragment) {
+        self.0.borrow_mut()[self.1.index(x, y).expect("inside")] += 1;
     }
 }
 
@@ -305,7 +305,7 @@ proptest! {
         };
         // Cut points are rounded to 1/256 pixel: the parts of an edge may lie a hair beside the whole, but where the
         // triangle covers a pixel and its neighbors, the parts do, once.
-        let (one, other) = (count(&[Plane::through_eye(normal)]), count(&[Plane::through_eye(-normal)]));
+        let (one, other) = (count(&[Plane::homogeneous(normal)]), count(&[Plane::homogeneous(-normal)]));
         let whole = count(&[]);
         let both: Vec<u32> = one.iter().zip(&other).map(|(a, b)| a + b).collect();
         prop_assert!(both.iter().all(|&count| count <= 1), "a double");

@@ -4,20 +4,22 @@
 mod chapters;
 
 use chapters::{CHAPTERS, variant};
-use rasterbook::program::{History, RasterizerChoice, Sitting, Variant, histories, history};
+use rasterbook::Pixel;
+use rasterbook::figure::{DrawOptions, RasterizerChoice, Variant};
+use rasterbook::inspect::{History, histories, history};
 use rayon::prelude::*;
 use serde_json::Value;
 
 /// Variants that show another buffer at the end than the one that was drawn into last.
 const OTHER_BUFFER: &[&str] = &["presented", "double-buffer"];
 
-fn of(chapter: &'static str, variant: &Variant, pixel: (i32, i32)) -> History {
+fn of(chapter: &'static str, variant: &Variant, pixel: Pixel) -> History {
     let subject = variant.subject().expect("assets");
-    history(chapter, variant, &variant.sitting(subject.as_ref()), pixel)
+    history(chapter, variant, &variant.options(subject.as_ref()), pixel)
 }
 
 /// Pixels all over a picture: a grid of odd steps, the corners, and the middle of each side.
-fn pixels((width, height): (u32, u32)) -> Vec<(i32, i32)> {
+fn pixels((width, height): (u32, u32)) -> Vec<Pixel> {
     let (right, top) = (width as i32 - 1, height as i32 - 1);
     let mut pixels = vec![(0, 0), (right, 0), (0, top), (right, top), (right / 2, 0), (0, top / 2), (100, 0)];
     for row in 0..4 {
@@ -36,12 +38,12 @@ fn what_is_told_is_what_stands_in_the_picture() {
         .collect();
     rows.par_iter().for_each(|&(chapter, variant)| {
         let subject = variant.subject().expect("assets");
-        let own = variant.sitting(subject.as_ref());
+        let own = variant.options(subject.as_ref());
         let both = [RasterizerChoice::Scanline, RasterizerChoice::Edge];
         let choices = variant.rasterizer.map_or(vec![own.rasterizer], |_| both.to_vec());
         for rasterizer in choices {
-            let sitting = Sitting { rasterizer, ..own.clone() };
-            for history in histories(chapter, variant, &sitting, pixels(variant.size)) {
+            let options = DrawOptions { rasterizer, ..own.clone() };
+            for history in histories(chapter, variant, &options, pixels(variant.size)) {
                 check(&history, variant);
             }
         }
@@ -55,10 +57,12 @@ fn check(history: &History, variant: &Variant) {
     // A line between enlarged pixels belongs to none of them.
     let is_enlarged = events.iter().any(|event| event["kind"] == "enlarged");
     if !is_enlarged && !OTHER_BUFFER.contains(&variant.name) {
-        assert_eq!(history.told(), history.color(), "{text}");
+        assert_eq!(history.last_color(), history.color(), "{text}");
     }
     assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
     assert!(!events.is_empty(), "{text}");
+    // The recorder knows every event that any stage sends.
+    assert!(!events.iter().any(|event| event["kind"] == "unknown"), "{text}");
     // Something covers a pixel, or it is said that nothing does.
     let covers = |event: &Value| {
         matches!(event["kind"].as_str(), Some("line" | "half" | "triangle" | "painted" | "note"))
@@ -84,7 +88,7 @@ fn the_formula_gives_what_is_told() {
         let triangle = json["events"].as_array().expect("a list").iter().find(|e| e["kind"] == "triangle");
         let hit = &triangle.expect("a triangle covers it")["hits"][0];
         let (values, t) = (&hit["values"], number(&hit["t"]["here"]["along row"]));
-        // What is told of the ends of the row of the affine picture was reckoned affinely: only its last step is checked.
+        // What is told of the ends of the row of the affine picture was computed affinely: only its last step is checked.
         let (a, b) = (&values["row, left"], &values["row, right"]);
         for v in ["V1", "V2"] {
             let (va, vb) = (number(&a[v]), number(&b[v]));
@@ -124,7 +128,7 @@ fn nothing_says_so() {
 }
 
 /// One history for each chapter, pinned.
-const PINNED: [(&str, &str, (i32, i32)); 13] = [
+const PINNED: [(&str, &str, Pixel); 13] = [
     ("ch01_pixels", "pixel", (200, 200)),
     ("ch02_dda_lines", "star", (300, 260)),
     ("ch02_triangles", "flat", (150, 100)),

@@ -5,22 +5,22 @@ use std::cell::RefCell;
 use glam::{DVec2, DVec3, dvec3};
 use proptest::prelude::*;
 use rasterbook::area::Winding;
-use rasterbook::clip::{ClipVertex, ClipVolume};
+use rasterbook::clip::{Assembled, ClipVolume};
 use rasterbook::cull::CullMode;
-use rasterbook::depth::{DepthEncoding, DepthTest, Target};
+use rasterbook::depth::{DepthEncoding, DepthTest};
 use rasterbook::exact::Exact;
 use rasterbook::interpolate::Interpolation;
 use rasterbook::merge::{Merge, Verdict};
-use rasterbook::mesh::Mesh;
 use rasterbook::model::{Model, ModelVertex};
-use rasterbook::pipeline::{LoadOp, RenderState, draw};
-use rasterbook::probe::{Assembled, FragmentEvent, Probe, Silent, Vertex};
-use rasterbook::raster::{Rasterizer, Scanline};
-use rasterbook::real::Real;
+use rasterbook::observer::Observer;
+use rasterbook::probe::{Fragment, Piece, Probe};
+use rasterbook::raster::Rasterizer;
 use rasterbook::scanline::{StepLimit, Walk};
-use rasterbook::shader::{Shaded, Shader};
 use rasterbook::transform::{Frustum, Viewport, about, rotate_x_to_y, rotate_z_to_y};
-use rasterbook::{Color, Framebuffer, Rect};
+use rasterbook::{
+    ClipVertex, Color, Framebuffer, LoadOp, Mesh, Pixel, Real, Rect, RenderState, Scanline, Shaded, Shader,
+    Silent, Target, draw,
+};
 
 const VIEW: Frustum = Frustum { left: -1.0, right: 1.0, bottom: -0.75, top: 0.75, near: 1.0, far: 20.0 };
 const SIZE: (u32, u32) = (64, 48);
@@ -233,14 +233,16 @@ struct Recorder {
     edges: RefCell<Vec<[DVec2; 2]>>,
 }
 
+impl Observer for Recorder {}
+
 impl Probe for Recorder {
-    fn assembled(&self, _: &Assembled<'_>) {
+    fn assembled(&self, _: &dyn Fn() -> Assembled) {
         *self.triangles.borrow_mut() += 1;
     }
 
-    fn piece(&self, vertices: [Vertex<'_>; 3], _: f64) {
+    fn piece(&self, piece: &dyn Fn() -> Piece) {
         let viewport = Viewport::whole(Rect::sized(SIZE.0, SIZE.1));
-        let [a, b, c] = vertices.map(|vertex| viewport.pixel_corners(vertex.position.truncate()));
+        let [a, b, c] = piece().vertices.map(|vertex| viewport.pixel_corners(vertex.position.truncate()));
         self.edges.borrow_mut().extend([[a, b], [b, c], [c, a]]);
     }
 
@@ -248,14 +250,14 @@ impl Probe for Recorder {
         *self.culled.borrow_mut() += 1;
     }
 
-    fn fragment(&self, event: &FragmentEvent<'_>) {
-        let FragmentEvent { x, y, w, varyings, verdict, color, .. } = *event;
-        self.fragments.borrow_mut().push(Seen { x, y, w, varyings: varyings.to_vec(), verdict, color });
+    fn fragment(&self, (x, y): Pixel, fragment: &dyn Fn() -> Fragment) {
+        let Fragment { w, varyings, verdict, color, .. } = fragment();
+        self.fragments.borrow_mut().push(Seen { x, y, w, varyings, verdict, color });
     }
 }
 
 #[test]
-fn the_probe_hears_everything_and_changes_nothing() {
+fn a_probe_observes_everything_and_changes_nothing() {
     let at = |x, y, z, color| Point { view: dvec3(x, y, z), color };
     let points = [
         at(-2.0, -1.0, 5.0, [255.0, 0.0, 0.0]),
@@ -268,8 +270,8 @@ fn the_probe_hears_everything_and_changes_nothing() {
     ];
     let state = RenderState::default();
     let recorder = Recorder::default();
-    let heard = render(&points, state, &recorder);
-    assert_eq!(colors(&heard), colors(&render(&points, state, &Silent)));
+    let observed = render(&points, state, &recorder);
+    assert_eq!(colors(&observed), colors(&render(&points, state, &Silent)));
     assert_eq!(*recorder.triangles.borrow(), 2);
 
     let fragments = recorder.fragments.borrow();
@@ -277,7 +279,7 @@ fn the_probe_hears_everything_and_changes_nothing() {
         fragments.iter().any(|fragment| fragment.verdict == Verdict::Hidden && fragment.color[1] == 255.0)
     );
     for fragment in fragments.iter().filter(|fragment| fragment.verdict != Verdict::Hidden) {
-        assert!(heard.color.get(fragment.x, fragment.y) != Some(Color::BLACK));
+        assert!(observed.color.get(fragment.x, fragment.y) != Some(Color::BLACK));
     }
 
     let culling = Recorder::default();
@@ -371,21 +373,25 @@ struct Strays {
     count: RefCell<usize>,
 }
 
+impl Observer for Strays {}
+
 impl Probe for Strays {
-    fn piece(&self, vertices: [Vertex<'_>; 3], _: f64) {
+    fn piece(&self, piece: &dyn Fn() -> Piece) {
+        let vertices = piece().vertices;
         let of = |k: usize, pick: fn(f64, f64) -> f64| {
             vertices.iter().map(|v| v.varyings[k]).reduce(pick).unwrap_or_default()
         };
         *self.range.borrow_mut() = [[of(0, f64::min), of(1, f64::min)], [of(0, f64::max), of(1, f64::max)]];
     }
 
-    fn fragment(&self, event: &FragmentEvent<'_>) {
+    fn fragment(&self, _: Pixel, fragment: &dyn Fn() -> Fragment) {
+        let varyings = fragment().varyings;
         // Rounding alone makes no stray: corners lie on the borders of texels.
         const ROUNDING: f64 = 1e-9;
         let texel = |coordinate: f64| (coordinate * 512.0).floor();
         let [low, high] = *self.range.borrow();
         let is_inside = |k: usize| {
-            let value = event.varyings[k];
+            let value = varyings[k];
             texel(value + ROUNDING) >= texel(low[k]) && texel(value - ROUNDING) <= texel(high[k])
         };
         *self.count.borrow_mut() += usize::from(!(is_inside(0) && is_inside(1)));
@@ -403,7 +409,7 @@ fn spikes_are_texels_from_outside_a_triangle() {
         draw(&ball.parts[0].mesh, &Coordinates, &state, rasterizer, &mut target, &probe);
         probe.count.into_inner()
     }
-    let ball = rasterbook::program::assets::model("sphere.obj").expect("an asset");
+    let ball = rasterbook::figure::assets::model("sphere.obj").expect("an asset");
     let [overrun, edges, everywhere] = [StepLimit::Overrun, StepLimit::Edges, StepLimit::Everywhere]
         .map(|limit| strays(limit, &Scanline, &ball));
     assert_eq!(strays(StepLimit::Overrun, &Exact::<f64>::new(), &ball), 0, "nothing is stepped");

@@ -16,7 +16,7 @@ use std::process::{Command, ExitCode};
 
 use chapters::CHAPTERS;
 use libtest_mimic::{Arguments, Failed, Trial};
-use rasterbook::program::Mistake;
+use rasterbook::figure::Mistake;
 
 fn main() -> ExitCode {
     // A failed comparison is told once, by its test.
@@ -59,11 +59,11 @@ fn all_pictures() -> impl Iterator<Item = Picture> {
         };
         let picture = Picture { program, variant: variant.name, frame: None, is_comparison: false, name };
         let comparison = match variant.mistake {
-            Mistake::MendedBy(remedy) => {
+            Mistake::RemediedBy(remedy) => {
                 let name = format!("{}--{remedy}", picture.name);
                 Some(Picture { is_comparison: true, name, ..picture.clone() })
             }
-            Mistake::No | Mistake::Unmended => None,
+            Mistake::No | Mistake::WithoutRemedy => None,
         };
         let single = frames.into_iter().map(move |frame| {
             let at = frame.map_or_else(String::new, |frame| format!("@{frame:03}"));

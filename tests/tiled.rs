@@ -12,24 +12,22 @@ use chapters::CHAPTERS;
 use glam::{DVec2, DVec4, dvec2, dvec4};
 use proptest::prelude::*;
 use rasterbook::area::Winding;
-use rasterbook::clip::{ClipVertex, ClipVolume, DepthRange};
+use rasterbook::clip::{ClipVolume, DepthRange};
 use rasterbook::cull::CullMode;
-use rasterbook::depth::{DepthEncoding, DepthTest, Target};
+use rasterbook::depth::{DepthEncoding, DepthTest};
 use rasterbook::exact::Exact;
+use rasterbook::figure::{DrawOptions, RasterizerChoice};
 use rasterbook::interpolate::Interpolation;
 use rasterbook::merge::{Blend, Merge};
-use rasterbook::mesh::Mesh;
-use rasterbook::pipeline::{LoadOp, RenderState, draw};
-use rasterbook::probe::Silent;
-use rasterbook::program::{RasterizerChoice, Sitting};
-use rasterbook::raster::{Rasterizer, Scanline};
-use rasterbook::real::Real;
-use rasterbook::shader::{Paint, Shaded, Shader};
+use rasterbook::shader::Paint;
 use rasterbook::texture::{AddressMode, Texture};
 use rasterbook::tiled::Tiled;
 use rasterbook::transform::Viewport;
 use rasterbook::varyings::Derivatives;
-use rasterbook::{Color, Framebuffer};
+use rasterbook::{
+    ClipVertex, Color, Framebuffer, LoadOp, Mesh, Real, RenderState, Scanline, Shaded, Shader, Silent,
+    Target, draw,
+};
 use targets::assert_same;
 
 /// A vertex in clip space, with a color and texture coordinates.
@@ -94,16 +92,30 @@ fn busy(mode: AddressMode, is_filtered: bool) -> Busy {
     Busy { texture: texture(), mode, is_filtered }
 }
 
-fn draw_with<S: Shader<N>, Z: Rasterizer<Depth = f32>, const N: usize>(
+/// Draws a mesh: with the fast rasterizer, or else with the exact one.
+fn draw_onto<S: Shader<N>, const N: usize>(
+    target: &mut Target<f32>,
     mesh: &Mesh<S::Attributes>,
     shader: &S,
     state: &RenderState,
-    rasterizer: &Z,
+    tiled: Option<&Tiled>,
+) {
+    match tiled {
+        Some(tiled) => tiled.draw_mesh(mesh, shader, state, target),
+        None => draw(mesh, shader, state, &Exact::<f32>::new(), target, &Silent),
+    }
+}
+
+fn draw_with<S: Shader<N>, const N: usize>(
+    mesh: &Mesh<S::Attributes>,
+    shader: &S,
+    state: &RenderState,
+    tiled: Option<&Tiled>,
     size: (u32, u32),
 ) -> Target<f32> {
     let mut target = Target::<f32>::sized(size.0, size.1);
     target.clear(Color::rgb(10, 20, 30), state.clear_depth as f32);
-    draw(mesh, shader, state, rasterizer, &mut target, &Silent);
+    draw_onto(&mut target, mesh, shader, state, tiled);
     target
 }
 
@@ -113,12 +125,17 @@ fn compare<S: Shader<N>, const N: usize>(
     state: &RenderState,
     size: (u32, u32),
 ) {
-    let exact = draw_with(mesh, shader, state, &Exact::<f32>::new(), size);
+    let exact = draw_with(mesh, shader, state, None, size);
     let tiled = Tiled::new();
     // Twice, since working memory is kept.
     for _ in 0..2 {
-        assert_same(&draw_with(mesh, shader, state, &tiled, size), &exact);
+        assert_same(&draw_with(mesh, shader, state, Some(&tiled), size), &exact);
     }
+    // Triangles that others have shaded and clipped.
+    let mut target = Target::<f32>::sized(size.0, size.1);
+    target.clear(Color::rgb(10, 20, 30), state.clear_depth as f32);
+    draw(mesh, shader, state, &tiled, &mut target, &Silent);
+    assert_same(&target, &exact);
 }
 
 /// A corner on the screen or near it, at the eye, behind it, or far away.
@@ -266,10 +283,10 @@ fn threads_do_not_matter() {
         merge: Merge { blend: Blend::SourceOver, ..Merge::default() },
         ..RenderState::default()
     };
-    let exact = draw_with(&mesh, &shader, &state, &Exact::<f32>::new(), size);
+    let exact = draw_with(&mesh, &shader, &state, None, size);
     for threads in [1, 2, 3, 8] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-        let tiled = pool.install(|| draw_with(&mesh, &shader, &state, &Tiled::new(), size));
+        let tiled = pool.install(|| draw_with(&mesh, &shader, &state, Some(&Tiled::new()), size));
         assert_same(&tiled, &exact);
     }
 }
@@ -384,7 +401,7 @@ fn every_variant_of_the_pipeline() {
         for variant in chapter.variants.iter().filter(|variant| variant.rasterizer.is_some()) {
             let subject = variant.subject().expect("assets");
             let picture =
-                |rasterizer| variant.draw(&Sitting { rasterizer, ..variant.sitting(subject.as_ref()) });
+                |rasterizer| variant.draw(&DrawOptions { rasterizer, ..variant.options(subject.as_ref()) });
             let [scanline, edge, tiled] =
                 [RasterizerChoice::Scanline, RasterizerChoice::Edge, RasterizerChoice::Tiled].map(picture);
             let differ = |a: &Framebuffer, b: &Framebuffer, by: u8| {
@@ -529,10 +546,7 @@ fn layers_with_holes_on_what_was_there() {
         let both = |tiled: Option<&Tiled>| {
             let mut target = Target::<f32>::sized(size.0, size.1);
             for (mesh, state) in [(&below, &cleared), (&above, &RenderState::default())] {
-                match tiled {
-                    Some(tiled) => draw(mesh, &shader, state, tiled, &mut target, &Silent),
-                    None => draw(mesh, &shader, state, &Exact::<f32>::new(), &mut target, &Silent),
-                }
+                draw_onto(&mut target, mesh, &shader, state, tiled);
             }
             target
         };
@@ -562,7 +576,7 @@ fn what_is_hidden_in_all_of_a_tile_is_not_shaded() {
         let shader = Counted::default();
         let state = RenderState { load: LoadOp::Clear, ..RenderState::default() };
         let mesh = layers(depths, || 0.0);
-        draw_with(&mesh, &shader, &state, &Tiled::new(), (1280, 320));
+        draw_with(&mesh, &shader, &state, Some(&Tiled::new()), (1280, 320));
         shader.asked.into_inner()
     };
     let one = count(&[0.0]);

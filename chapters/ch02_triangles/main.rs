@@ -13,7 +13,7 @@ mod scanlines;
 
 use std::process::ExitCode;
 
-use rasterbook::program::{Chapter, Variant};
+use rasterbook::figure::{Chapter, Variant};
 
 pub(crate) const CHAPTER: Chapter = Chapter {
     name: "ch02_triangles",
@@ -33,7 +33,7 @@ pub(crate) const CHAPTER: Chapter = Chapter {
         )
         .source("section 2.2, Figure 2-4")
         .size(320, 320)
-        .mended_by("clamped"),
+        .remedied_by("clamped"),
         Variant::new(
             "clamped",
             scanlines::clamped,
@@ -46,7 +46,7 @@ pub(crate) const CHAPTER: Chapter = Chapter {
             edges::shared_edge,
             "six triangles added up: yellow and red pixels are drawn twice or more, along every seam",
         )
-        .mended_by("top-left"),
+        .remedied_by("top-left"),
         Variant::new("top-left", edges::top_left, "the same six triangles by edge functions and the top-left rule: each pixel is drawn once, and there is no hole"),
         Variant::new("bounding-box", edges::bounding_box, "the box around a triangle: outside, the tint says which edge has the pixel on its wrong side; where none has is the triangle")
             .source("second, third and fourth note"),

@@ -1,20 +1,20 @@
 //! Several samples in a pixel: stairs become shades.
 
 use glam::dvec2;
-use rasterbook::antialias::{CENTER, GRID_2X2, GRID_4X4, Pattern, ROTATED_4, Samples};
-use rasterbook::edge::{Coverage, Subpixel, center};
-use rasterbook::program::picture;
+use rasterbook::exact::edge::{Coverage, Subpixel, center};
+use rasterbook::exact::samples::{CENTER, GRID_2X2, GRID_4X4, Pattern, ROTATED_4, Samples};
+use rasterbook::figure::picture;
 use rasterbook::{Color, Framebuffer};
 
 /// A triangle that lies aslant in space: x and y on the screen, and a depth; how it is painted.
 struct Patch {
-    corners: [[f64; 3]; 3],
+    vertices: [[f64; 3]; 3],
     paint: Paint,
 }
 
 enum Paint {
     Plain(Color),
-    /// So many stripes from the first corner to the opposite edge.
+    /// So many stripes from the first vertex to the opposite edge.
     Striped(f64, [Color; 2]),
 }
 
@@ -30,7 +30,7 @@ impl Patch {
     }
 }
 
-/// How often the color of a pixel is reckoned.
+/// How often the color of a pixel is computed.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Shading {
     /// For each sample, at its place.
@@ -42,8 +42,8 @@ enum Shading {
 // ANCHOR: draw_samples
 /// Draws a patch: coverage and depth for each sample, color as often as `shading` says.
 fn draw(samples: &mut Samples<'_>, patch: &Patch, shading: Shading) {
-    let coverage = Coverage::new(patch.corners.map(|[x, y, _]| dvec2(x, y))).expect("a triangle with area");
-    // The weights of the three corners at a place on the screen.
+    let coverage = Coverage::new(patch.vertices.map(|[x, y, _]| dvec2(x, y))).expect("a triangle with area");
+    // The weights of the three vertices at a place on the screen.
     let weights = |place: Subpixel| {
         let [second, third]: [f64; 2] = coverage.weights(coverage.edge_values(place));
         [1.0 - second - third, second, third]
@@ -52,7 +52,7 @@ fn draw(samples: &mut Samples<'_>, patch: &Patch, shading: Shading) {
     for (x, y) in rect.rows().flat_map(|y| rect.columns().map(move |x| (x, y))) {
         for (sample, place) in samples.of_pixel(x, y) {
             if coverage.covers(coverage.edge_values(place)) {
-                let depth = (0..3).map(|i| weights(place)[i] * patch.corners[i][2]).sum();
+                let depth = (0..3).map(|i| weights(place)[i] * patch.vertices[i][2]).sum();
                 let shaded_at = if shading == Shading::PerSample { place } else { center(x, y) };
                 samples.draw(x, y, sample, depth, patch.color(weights(shaded_at)[0]));
             }
@@ -68,26 +68,26 @@ fn scene(framebuffer: &mut Framebuffer, pattern: &Pattern, shading: Shading) {
     let (light, dark) = (Color::rgb(230, 230, 220), Color::rgb(30, 40, 50));
     let mut patches = vec![
         Patch {
-            corners: [[3.0, 33.2, 1.0], [43.5, 30.1, 5.0], [12.4, 57.6, 3.0]],
+            vertices: [[3.0, 33.2, 1.0], [43.5, 30.1, 5.0], [12.4, 57.6, 3.0]],
             paint: Paint::Plain(blue),
         },
         Patch {
-            corners: [[6.2, 52.3, 4.5], [8.1, 27.9, 3.5], [40.3, 51.7, 2.5]],
+            vertices: [[6.2, 52.3, 4.5], [8.1, 27.9, 3.5], [40.3, 51.7, 2.5]],
             paint: Paint::Plain(orange),
         },
         Patch {
-            corners: [[22.0, 1.5, 1.0], [41.5, 26.3, 1.0], [1.6, 24.7, 1.0]],
+            vertices: [[22.0, 1.5, 1.0], [41.5, 26.3, 1.0], [1.6, 24.7, 1.0]],
             paint: Paint::Striped(38.0, [light, dark]),
         },
     ];
     for i in 0..9 {
         let (tip, root) = (dvec2(45.3, 3.4), dvec2(78.1 - 3.1 * f64::from(i), 9.0 + 5.7 * f64::from(i)));
         let aside = (root - tip).perp().normalize() * 0.75;
-        let corners = [tip, root - aside, root + aside].map(|point| [point.x, point.y, 1.0]);
-        patches.push(Patch { corners, paint: Paint::Plain(light) });
+        let vertices = [tip, root - aside, root + aside].map(|point| [point.x, point.y, 1.0]);
+        patches.push(Patch { vertices, paint: Paint::Plain(light) });
     }
     picture::draw_enlarged(framebuffer, (80, 60), 7, |screen| {
-        let mut samples = Samples::new(80, 60, pattern).heard_by(screen.listener());
+        let mut samples = Samples::new(80, 60, pattern).with_observer(screen.observer());
         for patch in &patches {
             draw(&mut samples, patch, shading);
         }

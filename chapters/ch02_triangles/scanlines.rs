@@ -1,61 +1,47 @@
 //! Triangles by rows: split at the middle vertex, walk up both sides, fill what lies between.
 
 use glam::{DVec2, DVec3, dvec2};
-use rasterbook::program::Subject;
-use rasterbook::scanline::{Corner, EdgeWalk, Half, Span, Walk, split};
+use rasterbook::figure::Subject;
+use rasterbook::scanline::{EdgeWalk, Walk, spans, split};
 use rasterbook::{Color, Framebuffer, Rect};
 
 // ANCHOR: fill
 /// Colors all pixels of a triangle.
 fn fill(framebuffer: &mut Framebuffer, triangle: [DVec2; 3], walk: Walk, color: Color) {
-    for half in halves(triangle).into_iter().flatten() {
-        fill_half(framebuffer, &half, walk, color);
-    }
-}
-
-/// The halves of a triangle whose corners carry nothing but their position.
-pub(super) fn halves(triangle: [DVec2; 3]) -> Option<[Half<()>; 2]> {
-    split(triangle.map(|position| Corner { position, attributes: () }), |(), (), _| ())
-}
-
-/// Colors the spans of one half.
-fn fill_half(framebuffer: &mut Framebuffer, half: &Half<()>, walk: Walk, color: Color) {
-    half.walk(
-        |_| [(), ()],
-        walk,
-        framebuffer.window(),
-        |span: Span<()>| {
-            for x in span.columns() {
-                framebuffer.set(x, span.y, color);
-            }
-        },
-    );
+    spans(triangle, walk, framebuffer.scissor(), |span| {
+        for x in span.columns() {
+            framebuffer.set(x, span.y, color);
+        }
+    });
 }
 // ANCHOR_END: fill
 
 /// Three points of the screen.
-pub(super) fn triangle(corners: [(f64, f64); 3]) -> [DVec2; 3] {
-    corners.map(DVec2::from)
+pub(super) fn triangle(vertices: [(f64, f64); 3]) -> [DVec2; 3] {
+    vertices.map(DVec2::from)
 }
 
 /// The book's triangle.
 pub(super) fn flat(framebuffer: &mut Framebuffer) {
-    let corners = triangle([(100.0, 0.0), (100.0, 300.0), (300.0, 0.0)]);
-    fill(framebuffer, corners, Walk::default(), Color::RED);
+    let triangle = triangle([(100.0, 0.0), (100.0, 300.0), (300.0, 0.0)]);
+    fill(framebuffer, triangle, Walk::default(), Color::RED);
 }
 
 // ANCHOR: split_in_two
-/// The halves in two colors; the corners and P′ marked.
+/// The halves in two colors; the vertices and P′ marked.
 pub(super) fn split_in_two(framebuffer: &mut Framebuffer) {
-    let corners = triangle([(430.0, 40.0), (90.0, 190.0), (540.0, 440.0)]);
-    for half in halves(corners).into_iter().flatten() {
-        let is_lower = half.left.start.position == half.right.start.position;
-        let color = if is_lower { Color::rgb(230, 120, 40) } else { Color::rgb(50, 110, 210) };
-        fill_half(framebuffer, &half, Walk::default(), color);
-
+    let triangle = triangle([(430.0, 40.0), (90.0, 190.0), (540.0, 440.0)]);
+    let split = split(triangle).expect("a triangle with area");
+    let halves = [(split.lower, Color::rgb(230, 120, 40)), (split.upper, Color::rgb(50, 110, 210))];
+    for (half, color) in halves {
+        half.spans(Walk::default(), framebuffer.scissor(), |span| {
+            for x in span.columns() {
+                framebuffer.set(x, span.y, color);
+            }
+        });
         for end in [half.left.start, half.left.end, half.right.start, half.right.end] {
-            let is_new = !corners.contains(&end.position);
-            mark(framebuffer, end.position, if is_new { Color::rgb(255, 230, 0) } else { Color::WHITE });
+            let is_new = !triangle.contains(&end);
+            mark(framebuffer, end, if is_new { Color::rgb(255, 230, 0) } else { Color::WHITE });
         }
     }
 }
@@ -85,12 +71,12 @@ fn tree(framebuffer: &mut Framebuffer, walk: Walk) {
         let (base, half_width) = (60.0 + 36.0 * layer, 100.0 - 14.0 * layer);
         // The lower end is now on the left, now on the right.
         let tilt = if i % 2 == 0 { 0.001 } else { -0.001 };
-        let corners = triangle([
+        let triangle = triangle([
             (160.0 - half_width, base - tilt),
             (160.0 + half_width, base + tilt),
             (160.0, base + 70.0),
         ]);
-        fill(framebuffer, corners, walk, Color::rgb(20, 90 + 22 * i, 50));
+        fill(framebuffer, triangle, walk, Color::rgb(20, 90 + 22 * i, 50));
     }
 }
 // ANCHOR_END: tree
@@ -110,14 +96,14 @@ pub(super) fn facets(framebuffer: &mut Framebuffer, subject: &Subject) {
         // The part of a face's normal that points to us: the cosine of the angle at which we see it.
         let facing = -(c - a).cross(b - a).normalize_or_zero().z;
         if facing > 0.0 {
-            let corners = [a, b, c].map(|point| dvec2(240.0, 240.0) + point.truncate() * 135.0);
-            fill(framebuffer, corners, Walk::default(), Color::gray((40.0 + 215.0 * facing) as u8));
+            let triangle = [a, b, c].map(|point| dvec2(240.0, 240.0) + point.truncate() * 135.0);
+            fill(framebuffer, triangle, Walk::default(), Color::gray((40.0 + 215.0 * facing) as u8));
         }
     }
 }
 
 /// The distance of a triangle's middle, times three.
 fn farness(triangle: &[DVec3; 3]) -> f64 {
-    triangle.iter().map(|corner| corner.z).sum()
+    triangle.iter().map(|vertex| vertex.z).sum()
 }
 // ANCHOR_END: facets

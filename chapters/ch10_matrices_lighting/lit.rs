@@ -1,17 +1,14 @@
 //! The book's last program: a textured model under a light, and its last exercise, the spike bug.
 
 use glam::{DMat4, DVec3, dvec3};
-use rasterbook::clip::ClipVertex;
 use rasterbook::cull::CullMode;
+use rasterbook::figure::{Canvas, Subject};
 use rasterbook::light::lambert;
 use rasterbook::model::ModelVertex;
-use rasterbook::pipeline::RenderState;
-use rasterbook::program::{Canvas, Subject};
-use rasterbook::real::Real;
 use rasterbook::scanline::{StepLimit, Walk};
-use rasterbook::shader::{Shaded, Shader};
 use rasterbook::texture::{AddressMode, Texture};
 use rasterbook::transform::{Frustum, about, rotate_x_to_y, rotate_z_to_y};
+use rasterbook::{ClipVertex, Real, RenderState, Shaded, Shader};
 
 use super::degrees;
 

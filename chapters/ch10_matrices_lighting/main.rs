@@ -17,7 +17,7 @@ mod walls;
 
 use std::process::ExitCode;
 
-use rasterbook::program::{Animation, Chapter, Variant};
+use rasterbook::figure::{Animation, Chapter, Variant};
 
 /// 360 frames, a degree each.
 const TURN: Animation = Animation { frames: 360, rate: 30 };
@@ -34,17 +34,17 @@ pub(crate) const CHAPTER: Chapter = Chapter {
             .source("section 10.5").size(800, 400),
         Variant::with_pipeline("camera", matrices::camera, "two boxes, a ball and a pawn on bricks, seen from the upper right by a look-at matrix: the eye looks down, and upright edges lean outwards"),
         Variant::of_model("spikes", lit::spikes, ["sphere.obj", "numbers.png"], "short dashes of wrong color on the ball: texels from beyond a triangle, fetched with t past an edge's end; try --zoom 4 --compare")
-            .source("section 11.4").animated(TURN).mended_by("spikes-fixed"),
+            .source("section 11.4").animated(TURN).remedied_by("spikes-fixed"),
         Variant::of_model("spikes-fixed", lit::lit, ["sphere.obj", "numbers.png"], "the same ball with t limited on the edges: nearly all dashes are gone; where u ends at 1, a first texel is left here and there")
             .source("section 11.4").animated(TURN),
         Variant::of_model("exact", lit::lit, ["sphere.obj", "numbers.png"], "the same ball by the exact rasterizer: no value is ever stepped past an edge, and no dash is left")
             .exact().animated(TURN),
         Variant::with_pipeline("normals-wrong", shading::normals_wrong, "a flattened ball, its normals turned by the model matrix: they lean to the sides, and the light does not fit the shape")
-            .mended_by("normals"),
+            .remedied_by("normals"),
         Variant::with_pipeline("normals", shading::normals, "the same ball, its normals turned by the inverse transpose: they stand upright on the surface, and the top is bright"),
         Variant::with_pipeline("flat", shading::flat, "one normal a face: every face of the coarse ball (left) shows, and of the fine one (right) still many"),
-        Variant::with_pipeline("gouraud", shading::gouraud, "light reckoned at the corners: smooth, but the highlight of the coarse ball has corners of its own"),
-        Variant::with_pipeline("phong", shading::phong, "light reckoned at every pixel: a round highlight on the coarse ball too; the broad one below ends in a hard edge"),
+        Variant::with_pipeline("gouraud", shading::gouraud, "light computed at the corners: smooth, but the highlight of the coarse ball has corners of its own"),
+        Variant::with_pipeline("phong", shading::phong, "light computed at every pixel: a round highlight on the coarse ball too; the broad one below ends in a hard edge"),
         Variant::with_pipeline("blinn-phong", shading::blinn_phong, "the same with the half vector: the broad highlight below has no edge within the lit side"),
         Variant::with_pipeline("distance", shading::distance, "above: parallel light, five balls alike; below: a lamp before the first ball, its light thins out with the square of the distance"),
         Variant::with_pipeline("nearest", textures::nearest, "a brick floor to the horizon, the nearest texel for each pixel: blocks in front, and far away false patterns"),
@@ -52,11 +52,11 @@ pub(crate) const CHAPTER: Chapter = Chapter {
         Variant::with_pipeline("mipmapped", textures::mipmapped, "smaller copies of the texture far away: no false pattern; look for the lines where one copy ends and the next begins"),
         Variant::with_pipeline("trilinear", textures::trilinear, "two copies mixed: no line is left; aslant, all is blurred more than it need be"),
         Variant::with_pipeline("mip-levels", textures::mip_levels, "which copy is used where: red the texture itself, then orange, yellow, green, …, each half as large"),
-        Variant::with_pipeline("address-modes", textures::address_modes, "texture coordinates far beyond 0 to 1, three floors: clamped (the border is drawn out), repeated, mirrored (every other copy is turned round)"),
+        Variant::with_pipeline("address-modes", textures::address_modes, "texture coordinates far beyond 0 to 1, three floors: clamped (the border is drawn out), repeated, mirrored (every other copy is reversed)"),
         Variant::with_pipeline("normal-mapped", walls::normal_mapped, "two flat walls under one lamp: the left one has one normal, the right one has a normal for every texel, and its bricks stand out")
             .source("first note"),
-        Variant::with_pipeline("gamma-space", spaces::gamma_space, "light reckoned with stored numbers: the ball darkens too soon, red and green meet in mud, and the mean of black and white is darker than fine stripes of both")
-            .exact().mended_by("linear-space"),
+        Variant::with_pipeline("gamma-space", spaces::gamma_space, "light computed with stored numbers: the ball darkens too soon, red and green meet in mud, and the mean of black and white is darker than fine stripes of both")
+            .exact().remedied_by("linear-space"),
         Variant::with_pipeline("linear-space", spaces::linear_space, "the same with amounts of light: a half-lit ball, a bright middle between red and green, and a mean as bright as the stripes")
             .exact(),
     ],

@@ -1,20 +1,15 @@
 //! What matrices do: turn, turn about a point, and put the eye where one likes.
 
 use glam::{DMat4, DVec3, dvec3};
-use rasterbook::Color;
-use rasterbook::clip::ClipVertex;
 use rasterbook::cull::CullMode;
+use rasterbook::figure::{Canvas, assets};
 use rasterbook::light::lambert;
-use rasterbook::mesh::Mesh;
 use rasterbook::model::ModelVertex;
-use rasterbook::pipeline::RenderState;
-use rasterbook::program::{Canvas, assets};
-use rasterbook::real::Real;
-use rasterbook::shader::{Shaded, Shader};
 use rasterbook::texture::{AddressMode, Texture};
 use rasterbook::transform::{
     Frustum, Viewport, about, look_at, normal_matrix, rotate_x_to_y, rotate_x_to_z, scale, translate,
 };
+use rasterbook::{ClipVertex, Color, Mesh, Real, RenderState, Shaded, Shader};
 
 use super::degrees;
 

@@ -1,18 +1,13 @@
-//! Where light is reckoned (faces, corners, pixels), which highlight there is, and how normals are turned.
+//! Where light is computed (faces, corners, pixels), which highlight there is, and how normals are turned.
 
 use std::f64::consts::{PI, TAU};
 
 use glam::{DMat3, DMat4, DVec3, dvec3};
-use rasterbook::Color;
-use rasterbook::clip::ClipVertex;
 use rasterbook::cull::CullMode;
+use rasterbook::figure::Canvas;
 use rasterbook::light::{Highlight, Light, Material, normalize};
-use rasterbook::mesh::Mesh;
-use rasterbook::pipeline::RenderState;
-use rasterbook::program::Canvas;
-use rasterbook::real::Real;
-use rasterbook::shader::{Shaded, Shader};
 use rasterbook::transform::{Frustum, normal_matrix, rotate_x_to_y, scale, translate};
+use rasterbook::{ClipVertex, Color, Mesh, Real, RenderState, Shaded, Shader};
 
 use super::degrees;
 
@@ -55,7 +50,7 @@ fn faceted(ball: &Mesh<Corner>) -> Mesh<Corner> {
 }
 
 // ANCHOR: frequency
-/// Where light is reckoned.
+/// Where light is computed.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Frequency {
     /// In the vertex shader; colors are interpolated (Gouraud, 1971). With the normals of faces: flat shading.

@@ -1,15 +1,10 @@
-//! What the numbers of a color mean: light reckoned with stored numbers, and with amounts of light.
+//! What the numbers of a color mean: light computed with stored numbers, and with amounts of light.
 
 use glam::{DVec2, DVec4, dvec4};
-use rasterbook::Color;
-use rasterbook::clip::ClipVertex;
+use rasterbook::figure::Canvas;
 use rasterbook::light::{lambert, normalize};
-use rasterbook::mesh::Mesh;
-use rasterbook::pipeline::RenderState;
-use rasterbook::program::Canvas;
-use rasterbook::real::Real;
-use rasterbook::shader::{Shaded, Shader};
 use rasterbook::srgb::{decode, encode};
+use rasterbook::{ClipVertex, Color, Mesh, Real, RenderState, Shaded, Shader};
 
 // ANCHOR: space
 /// In which numbers light is added and multiplied.
@@ -22,7 +17,7 @@ enum Space {
 }
 
 impl Space {
-    /// A stored color, 0..=255 → what is reckoned with, 0..=1.
+    /// A stored color, 0..=255 → what is computed with, 0..=1.
     fn enter<R: Real>(self, stored: [R; 3]) -> [R; 3] {
         match self {
             Self::Gamma => stored.map(|channel| channel / R::of(255.0)),
@@ -31,10 +26,10 @@ impl Space {
     }
 
     /// And back.
-    fn leave<R: Real>(self, reckoned: [R; 3]) -> [R; 3] {
+    fn leave<R: Real>(self, computed: [R; 3]) -> [R; 3] {
         match self {
-            Self::Gamma => reckoned.map(|channel| channel * R::of(255.0)),
-            Self::Linear => encode(reckoned),
+            Self::Gamma => computed.map(|channel| channel * R::of(255.0)),
+            Self::Linear => encode(computed),
         }
     }
 }

@@ -3,17 +3,12 @@
 use std::f64::consts::TAU;
 
 use glam::{DMat4, DVec3, dvec3};
-use rasterbook::Color;
-use rasterbook::clip::ClipVertex;
-use rasterbook::mesh::Mesh;
+use rasterbook::figure::{Canvas, assets};
 use rasterbook::mipmap::MipMaps;
-use rasterbook::pipeline::RenderState;
-use rasterbook::program::{Canvas, assets};
-use rasterbook::real::Real;
-use rasterbook::shader::{Shaded, Shader};
 use rasterbook::texture::{AddressMode, Texture};
 use rasterbook::transform::{Frustum, look_at};
 use rasterbook::varyings::Derivatives;
+use rasterbook::{ClipVertex, Color, Mesh, Real, RenderState, Shaded, Shader};
 
 /// How a color is made of texels.
 #[derive(Clone, Copy)]
@@ -64,7 +59,7 @@ impl Shader<2> for Floor {
             Filter::Trilinear => self.maps.trilinear(uv, level, self.mode),
             Filter::Levels => {
                 let texel = self.maps.bilinear(uv, level, self.mode);
-                let tint = R::look_up(level + R::of(0.5), R::of(0.0), |level, _| tint(level));
+                let tint = R::gather(level + R::of(0.5), R::of(0.0), |level, _| tint(level));
                 [0, 1, 2].map(|k| texel[k] * R::of(0.5) + tint[k] * R::of(0.5))
             }
         })

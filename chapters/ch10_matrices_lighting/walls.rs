@@ -1,16 +1,11 @@
 //! Normals from a picture: a flat wall whose bricks stand out.
 
 use glam::{DMat4, DVec3, dvec3};
-use rasterbook::Color;
-use rasterbook::clip::ClipVertex;
+use rasterbook::figure::{Canvas, assets};
 use rasterbook::light::{Highlight, Light, Material, mapped_normal, normalize};
-use rasterbook::mesh::Mesh;
-use rasterbook::pipeline::RenderState;
-use rasterbook::program::{Canvas, assets};
-use rasterbook::real::Real;
-use rasterbook::shader::{Shaded, Shader};
 use rasterbook::texture::{AddressMode, Texture};
 use rasterbook::transform::{Frustum, normal_matrix, rotate_x_to_z, translate};
+use rasterbook::{ClipVertex, Color, Mesh, Real, RenderState, Shaded, Shader};
 
 use super::degrees;
 

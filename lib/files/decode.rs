@@ -13,8 +13,9 @@ use zune_jpeg::zune_core::options::DecoderOptions;
 
 use super::orientation::{exif_of_png, of_exif};
 use super::{FileError, MAX_TEXELS};
+use crate::color::Color;
+use crate::framebuffer::Framebuffer;
 use crate::texture::Texture;
-use crate::{Color, Framebuffer};
 
 /// The most pixels that a byte of an image file can stand for: a PNG file of one bit a pixel, packed as far as its
 /// compression can. A header that claims more is wrong.

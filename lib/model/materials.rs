@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use super::MAX_WARNINGS;
 use super::statements::{Statements, keyword, name_without_comment, readable, without_comment, words};
 use super::text::Count;
-use crate::Color;
+use crate::color::Color;
 use crate::files::{FileError, MAX_FILE_BYTES, MAX_TEXELS, Warnings, load_texture_within, read_file_within};
 use crate::texture::Texture;
 

@@ -7,10 +7,10 @@ use std::time::Duration;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use rayon::prelude::*;
 
-use super::chapter::Animation;
-use super::output::{AnimationFormat, rgb_bytes};
+use super::output::AnimationFormat;
 use super::palette::Indexed;
-use crate::Framebuffer;
+use crate::figure::Animation;
+use crate::framebuffer::Framebuffer;
 
 /// How much memory the frames that are drawn at a time may take.
 const BATCH_BYTES: u64 = 1 << 28;
@@ -76,7 +76,7 @@ fn encode_png(animation: Animation, draw: Draw<'_>) -> Result<Vec<u8>, Box<dyn E
     for_each_frame(
         animation.frames,
         (width, height),
-        |frame| rgb_bytes(&draw(frame)),
+        |frame| draw(frame).rgb_from_top(),
         |pixels| Ok(writer.write_image_data(&pixels)?),
     )?;
     writer.finish()?;

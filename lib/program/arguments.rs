@@ -6,10 +6,10 @@ use std::path::PathBuf;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 
-use super::canvas::RasterizerChoice;
-use super::chapter::{Chapter, Mistake, Variant};
-use super::picture::Zoom;
-use crate::Framebuffer;
+use crate::figure::picture::Zoom;
+use crate::figure::{Chapter, Mistake, RasterizerChoice, Variant};
+use crate::framebuffer::Framebuffer;
+use crate::rect::Pixel;
 
 /// The most pixels that `--size` may ask for: a picture of 8192×8192.
 const MAX_PIXELS: u64 = 1 << 26;
@@ -31,7 +31,7 @@ pub(super) struct Request {
     pub(super) as_is: bool,
     pub(super) flat: bool,
     pub(super) rasterizer: Option<RasterizerChoice>,
-    pub(super) inspect: Option<(i32, i32)>,
+    pub(super) inspect: Option<Pixel>,
     pub(super) format: Format,
     pub(super) verbose: bool,
     pub(super) steps: bool,
@@ -147,16 +147,16 @@ fn subject(chapter: &Chapter) -> [Arg; 4] {
 
 /// How a picture came about.
 fn what_to_tell() -> [Arg; 5] {
-    let inspect = "Tell all that happened at the pixel (X, Y), y up from the bottom; no picture is written";
+    let inspect = "Report all that happened at the pixel (X, Y), y up from the bottom; no picture is written";
     [
         option("inspect", "X,Y", inspect)
             .value_parser(parse_pixel)
             .allow_hyphen_values(true)
             .conflicts_with_all(["all", "animate", "compare", "zoom", "out"]),
-        option("format", "FORM", "The form of what is told: text, or json for programs [default: text]")
+        option("format", "FORM", "The form of the report: text, or json for programs [default: text]")
             .value_parser(["text", "json"])
             .requires("inspect"),
-        switch("verbose", "Tell also what came near the pixel and did not reach it")
+        switch("verbose", "Report also what came near the pixel and did not reach it")
             .short('v')
             .requires("inspect"),
         switch("steps", "Draw an animation of how the picture comes about, step by step")
@@ -171,10 +171,10 @@ fn what_to_tell() -> [Arg; 5] {
 
 /// Which rasterizer the pipeline ends with.
 fn rasterizer(chapter: &Chapter) -> Arg {
-    let names = RasterizerChoice::ALL.map(RasterizerChoice::name);
+    let names = RasterizerChoice::ALL.iter().map(|choice| choice.name());
     let parse = PossibleValuesParser::new(names).map(|name| {
-        let named = RasterizerChoice::ALL.into_iter().find(|choice| choice.name() == name);
-        named.unwrap_or_default()
+        let named = RasterizerChoice::ALL.iter().find(|choice| choice.name() == name);
+        named.copied().unwrap_or_default()
     });
     option(
         "rasterizer",
@@ -206,7 +206,7 @@ fn how_to_draw(chapter: &Chapter) -> [Arg; 6] {
         option(
             "compare",
             "OTHER",
-            "Draw this | OTHER | where they differ; OTHER is a mistake's remedy unless told",
+            "Draw this | OTHER | where they differ; OTHER is a mistake's remedy if none is named",
         )
         .num_args(0..=1)
         .conflicts_with("all"),
@@ -219,8 +219,8 @@ pub(super) fn list(chapter: &Chapter) -> String {
     let line = |variant: &Variant| {
         let mistake = match variant.mistake {
             Mistake::No => String::new(),
-            Mistake::MendedBy(remedy) => format!(" [mistake; remedy: {remedy}]"),
-            Mistake::Unmended => " [mistake]".to_owned(),
+            Mistake::RemediedBy(remedy) => format!(" [mistake; remedy: {remedy}]"),
+            Mistake::WithoutRemedy => " [mistake]".to_owned(),
         };
         let source = if variant.source.is_empty() { String::new() } else { format!(" ({})", variant.source) };
         format!("  {:width$}  {}{source}{mistake}\n", variant.name, variant.look)
@@ -243,7 +243,7 @@ fn parse_size(text: &str) -> Result<(u32, u32), String> {
     Ok((width, height))
 }
 
-fn parse_pixel(text: &str) -> Result<(i32, i32), String> {
+fn parse_pixel(text: &str) -> Result<Pixel, String> {
     let coordinates = text
         .split_once(',')
         .and_then(|(x, y)| Some((x.trim().parse::<i32>().ok()?, y.trim().parse::<i32>().ok()?)));

@@ -9,7 +9,7 @@ pub enum Failure {
     Usage(String),
     /// It made sense and did not work; the text names the file and the cause: exit code 1.
     Runtime(String),
-    /// Whoever reads the output has gone away (`… --list | head -1`): a quiet end.
+    /// The reader of the output has gone away (`… --list | head -1`): a quiet end.
     ClosedPipe,
 }
 

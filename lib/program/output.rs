@@ -1,13 +1,14 @@
 //! Where pictures go: file names, formats, and writing without ever leaving half a file behind.
 
-use std::fs;
-use std::io::{Cursor, ErrorKind, Write};
+use std::error::Error;
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use image::{ImageFormat, RgbImage};
+use image::ImageFormat;
 
-use super::Failure;
-use crate::Framebuffer;
+use super::failure::Failure;
+use crate::framebuffer::Framebuffer;
+use crate::save::{encode, replace};
 
 /// Image formats that are often asked for and not written here.
 const UNSUPPORTED: [&str; 7] = ["jpg", "jpeg", "webp", "tif", "tiff", "svg", "pdf"];
@@ -50,7 +51,7 @@ impl Destination {
         }
         let format = ImageFormat::from_path(&path).unwrap_or(ImageFormat::Png);
         let bytes = encode(picture, format).map_err(|error| cannot_write(&path, &error))?;
-        replace(&path, &bytes)?;
+        replace_file(&path, &bytes)?;
         Ok(path)
     }
 
@@ -58,7 +59,7 @@ impl Destination {
     pub(super) fn write_animation(
         &self,
         name: &str,
-        encode: impl FnOnce(AnimationFormat) -> Result<Vec<u8>, Box<dyn std::error::Error>>,
+        encode: impl FnOnce(AnimationFormat) -> Result<Vec<u8>, Box<dyn Error>>,
     ) -> Result<PathBuf, Failure> {
         let path = self.path(name, "gif");
         let format = match extension(&path).as_deref() {
@@ -72,7 +73,7 @@ impl Destination {
             }
         };
         let bytes = encode(format).map_err(|error| cannot_write(&path, error.as_ref()))?;
-        replace(&path, &bytes)?;
+        replace_file(&path, &bytes)?;
         Ok(path)
     }
 }
@@ -91,43 +92,11 @@ fn extension(path: &Path) -> Option<String> {
     path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase)
 }
 
-fn encode(picture: &Framebuffer, format: ImageFormat) -> Result<Vec<u8>, image::ImageError> {
-    let image = RgbImage::from_raw(picture.width(), picture.height(), rgb_bytes(picture)).unwrap_or_default();
-    let mut bytes = Cursor::new(Vec::new());
-    image.write_to(&mut bytes, format)?;
-    Ok(bytes.into_inner())
+fn replace_file(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    replace(path, bytes).map_err(|error| Failure::Runtime(format!("cannot write {error}")))
 }
 
-/// A picture as a PNG file.
-pub(super) fn png_bytes(picture: &Framebuffer) -> Result<Vec<u8>, image::ImageError> {
-    encode(picture, ImageFormat::Png)
-}
-
-/// The channels of all pixels, the highest row first.
-pub(super) fn rgb_bytes(picture: &Framebuffer) -> Vec<u8> {
-    let mut bytes = Vec::with_capacity(picture.width() as usize * picture.height() as usize * 3);
-    for row in picture.rows_from_top() {
-        for color in row {
-            bytes.extend_from_slice(&color.channels());
-        }
-    }
-    bytes
-}
-
-/// Writes a whole file or nothing: under another name first, which then takes the place of the old file.
-fn replace(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    fs::create_dir_all(folder)
-        .map_err(|error| Failure::Runtime(format!("cannot make the folder {}: {error}", folder.display())))?;
-    let part = folder.join(format!(".rasterbook.{}.part", std::process::id()));
-    let written = fs::write(&part, bytes).and_then(|()| fs::rename(&part, path));
-    written.map_err(|error| {
-        let _ = fs::remove_file(&part);
-        cannot_write(path, &error)
-    })
-}
-
-fn cannot_write(path: &Path, error: &dyn std::error::Error) -> Failure {
+fn cannot_write(path: &Path, error: &dyn Error) -> Failure {
     Failure::Runtime(format!("cannot write {}: {error}", path.display()))
 }
 
@@ -144,7 +113,7 @@ pub(super) fn say(line: &str) -> Result<(), Failure> {
     })
 }
 
-/// A line on standard error; nobody is told if that fails.
+/// A line on standard error; a failure is not reported.
 pub(super) fn note(line: &str) {
     let _ = writeln!(std::io::stderr(), "{line}");
 }
@@ -161,17 +130,5 @@ mod tests {
         assert_eq!(of("pictures"), Ok(Destination::Folder("pictures".into())));
         assert_eq!(of("v1.2"), Ok(Destination::Folder("v1.2".into())));
         assert!(matches!(of("a.jpg"), Err(Failure::Usage(_))));
-    }
-
-    #[test]
-    fn every_format_holds_the_picture() {
-        let mut picture = Framebuffer::new(3, 2);
-        picture.set(2, 1, crate::Color::rgb(10, 20, 30));
-        for format in [ImageFormat::Png, ImageFormat::Bmp, ImageFormat::Tga, ImageFormat::Pnm] {
-            let bytes = encode(&picture, format).expect("a small picture");
-            let read = image::load_from_memory_with_format(&bytes, format).expect("just written").to_rgb8();
-            assert_eq!(read.dimensions(), (3, 2));
-            assert_eq!(read.get_pixel(2, 0).0, [10, 20, 30], "{format:?}");
-        }
     }
 }

@@ -18,7 +18,8 @@
 //!
 //! Source: S. J. Wan, P. Prusinkiewicz, S. K. M. Wong, Variance-based color image quantization for frame buffer display, 1990.
 
-use crate::{Color, Framebuffer};
+use crate::color::Color;
+use crate::framebuffer::Framebuffer;
 
 /// The most colors that a palette has.
 const MOST: usize = 256;
@@ -164,7 +165,7 @@ fn nearest(palette: &[Channels], color: Channels) -> u8 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Rect;
+    use crate::rect::Rect;
 
     fn colors_of(indexed: &Indexed) -> Vec<Channels> {
         indexed.pixels.iter().map(|&place| indexed.palette[usize::from(place)]).collect()

@@ -2,29 +2,32 @@
 
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::Failure;
 use super::animation::{encode, progress_bar};
 use super::arguments::{Comparison, Format, Request, list};
-use super::canvas::{RasterizerChoice, Subject};
-use super::chapter::{Chapter, Mistake, Sitting, Variant};
-use super::history::History;
-use super::inspect::history;
+use super::failure::Failure;
 use super::output::{Destination, note, say};
-use super::picture::{Zoom, difference, side_by_side, zoomed};
-use super::record::{Pixel, Recorder};
-use super::steps::Steps;
+use crate::figure::picture::{Zoom, difference, side_by_side, zoomed};
+use crate::figure::{Chapter, DrawOptions, Mistake, RasterizerChoice, Subject, Variant};
 use crate::files::{FileError, load_texture, shown};
+use crate::framebuffer::Framebuffer;
+use crate::inspect::{Steps, history};
 use crate::model::{Model, NormalStyle};
-use crate::probe::Listener;
+use crate::rect::{Pixel, Rect};
 use crate::texture::Texture;
-use crate::{Framebuffer, Rect};
+
+impl Chapter {
+    /// The whole program: reads the arguments, draws, writes, reports.
+    #[must_use]
+    pub fn main(&self) -> ExitCode {
+        main(self)
+    }
+}
 
 /// Reads the arguments, does what they say, reports.
-pub(super) fn main(chapter: &Chapter) -> ExitCode {
+fn main(chapter: &Chapter) -> ExitCode {
     let request = match Request::parse(chapter, std::env::args_os()) {
         Ok(request) => request,
         Err(error) => {
@@ -90,7 +93,7 @@ fn other<'a>(
 ) -> Result<&'a Variant, Failure> {
     match (comparison, variant.mistake) {
         (Comparison::With(name), _) => find(chapter, name),
-        (Comparison::Remedy, Mistake::MendedBy(remedy)) => find(chapter, remedy),
+        (Comparison::Remedy, Mistake::RemediedBy(remedy)) => find(chapter, remedy),
         (Comparison::Remedy, _) => Err(Failure::Usage(format!(
             "'{}' has no remedy to be compared with: name the other variant, --compare OTHER",
             variant.name
@@ -99,18 +102,19 @@ fn other<'a>(
 }
 
 /// A variant as it was asked for: its size, its rasterizer, and what it is a picture of.
-struct Commission<'a> {
+struct Job<'a> {
     variant: &'a Variant,
     size: (u32, u32),
     rasterizer: RasterizerChoice,
     subject: Option<Subject>,
 }
 
-impl<'a> Commission<'a> {
+impl<'a> Job<'a> {
     fn new(variant: &'a Variant, request: &Request, given: &Given) -> Result<Self, Failure> {
         let size = request.size.unwrap_or(variant.size);
         check_zoom(size, request.zoom)?;
-        let subject = variant.subject()?.map(|own| match &given.model {
+        let own = variant.subject().map_err(runtime_failure)?;
+        let subject = own.map(|own| match &given.model {
             // The chapters' own models are where they should be, and have their own texture.
             None => Subject { texture: given.texture.clone().or(own.texture), ..own },
             Some(model) => Subject { model: model.clone(), texture: given.texture.clone() },
@@ -120,17 +124,18 @@ impl<'a> Commission<'a> {
     }
 
     fn draw(&self, frame: u32) -> Framebuffer {
-        self.draw_heard_by(frame, None)
+        self.variant.draw(&self.options(frame))
     }
 
-    fn draw_heard_by(&self, frame: u32, listener: Option<Listener>) -> Framebuffer {
-        self.variant.draw(&Sitting { listener, ..self.sitting(frame) })
-    }
-
-    fn sitting(&self, frame: u32) -> Sitting<'_> {
+    fn options(&self, frame: u32) -> DrawOptions<'_> {
         let (size, rasterizer, subject) = (self.size, self.rasterizer, self.subject.as_ref());
-        Sitting { size, frame, rasterizer, subject, listener: None }
+        DrawOptions { size, frame, rasterizer, subject, observer: None }
     }
+}
+
+/// What is wrong with a file.
+fn runtime_failure(error: FileError) -> Failure {
+    Failure::Runtime(error.to_string())
 }
 
 /// The rasterizer that was asked for, if the variant has a choice.
@@ -174,7 +179,6 @@ impl Given {
         for variant in variants {
             check_model_options(variant, request)?;
         }
-        let failure = |error: FileError| Failure::Runtime(error.to_string());
         let mut warnings = Vec::new();
         let mut model = None;
         if let Some(path) = &request.model {
@@ -185,7 +189,7 @@ impl Given {
                 progress.set_position(read);
             });
             progress.finish_and_clear();
-            let (loaded, more) = loaded.map_err(failure)?;
+            let (loaded, more) = loaded.map_err(runtime_failure)?;
             warnings.extend(more);
             if request.texture.is_some() && !loaded.has_texture_coordinates() {
                 let odd = "has no texture coordinates: one texel covers all of it";
@@ -195,7 +199,7 @@ impl Given {
         }
         let mut texture = None;
         if let Some(path) = &request.texture {
-            let (loaded, more) = load_texture(path).map_err(failure)?;
+            let (loaded, more) = load_texture(path).map_err(runtime_failure)?;
             warnings.extend(more);
             texture = Some(loaded);
         }
@@ -252,8 +256,8 @@ fn name_of(variant: &Variant, request: &Request) -> String {
 
 fn draw_one(variant: &Variant, request: &Request, destination: &Destination) -> Result<(), Failure> {
     let frame = frame_of(variant, request)?;
-    let commission = Commission::new(variant, request, &Given::load(request, &[variant])?)?;
-    let picture = enlarged(commission.draw(frame), request.zoom);
+    let job = Job::new(variant, request, &Given::load(request, &[variant])?)?;
+    let picture = enlarged(job.draw(frame), request.zoom);
     let path = destination.write(&name_of(variant, request), &picture)?;
     say(&path.display().to_string())
 }
@@ -262,14 +266,14 @@ fn animate(variant: &Variant, request: &Request, destination: &Destination) -> R
     let Some(animation) = variant.animation else {
         return Err(Failure::Usage(format!("'{}' is one picture: it cannot be animated", variant.name)));
     };
-    let commission = Commission::new(variant, request, &Given::load(request, &[variant])?)?;
-    let draw = |frame| enlarged(commission.draw(frame), request.zoom);
+    let job = Job::new(variant, request, &Given::load(request, &[variant])?)?;
+    let draw = |frame| enlarged(job.draw(frame), request.zoom);
     let path =
         destination.write_animation(&name_of(variant, request), |format| encode(format, animation, &draw))?;
     say(&path.display().to_string())
 }
 
-/// Tells the history of a pixel; nothing is written but text.
+/// Prints the history of a pixel; nothing is written but text.
 fn inspect_pixel(
     chapter: &Chapter,
     variant: &Variant,
@@ -277,23 +281,21 @@ fn inspect_pixel(
     pixel: Pixel,
 ) -> Result<(), Failure> {
     let frame = frame_of(variant, request)?;
-    let commission = Commission::new(variant, request, &Given::load(request, &[variant])?)?;
-    check_inside(commission.size, pixel)?;
-    let history = history(chapter.name, variant, &commission.sitting(frame), pixel);
+    let job = Job::new(variant, request, &Given::load(request, &[variant])?)?;
+    check_inside(job.size, pixel)?;
+    let history = history(chapter.name, variant, &job.options(frame), pixel);
     if request.format == Format::Json {
         return say(&history.to_json());
     }
-    let others = if request.verbose { history.others.clone() } else { Vec::new() };
-    say(&History { others, ..history }.to_string())
+    let history = if request.verbose { history } else { history.without_misses() };
+    say(&history.to_string())
 }
 
 /// Draws how a picture came about: step by step, or how often each pixel was written.
 fn draw_recorded(variant: &Variant, request: &Request, destination: &Destination) -> Result<(), Failure> {
     let frame = frame_of(variant, request)?;
-    let commission = Commission::new(variant, request, &Given::load(request, &[variant])?)?;
-    let recorder = Arc::new(Recorder::new(None));
-    let picture = commission.draw_heard_by(frame, Some(recorder.clone()));
-    let steps = Steps::new(&recorder.events(), picture);
+    let job = Job::new(variant, request, &Given::load(request, &[variant])?)?;
+    let steps = Steps::new(variant, &job.options(frame));
     let path = if request.steps {
         let draw = |number| enlarged(steps.frame(number), request.zoom);
         let name = format!("{}-steps", name_of(variant, request));
@@ -315,8 +317,8 @@ fn draw_comparison(
 ) -> Result<(), Failure> {
     let frame = frame_of(this, request)?;
     let given = Given::load(request, &[this, that])?;
-    let first = Commission::new(this, request, &given)?.draw(frame);
-    let second = Commission::new(that, request, &given)?.draw(frame);
+    let first = Job::new(this, request, &given)?.draw(frame);
+    let second = Job::new(that, request, &given)?.draw(frame);
     let Some((marked, count)) = difference(&first, &second) else {
         let reason = format!("'{}' and '{}' differ in size: give --size", this.name, that.name);
         return Err(Failure::Usage(reason));

@@ -1,9 +1,10 @@
 //! The background: what stands where nothing is drawn. Where it stands already it is not written again.
 
-use super::Band;
-use crate::pipeline::{LoadOp, RenderState};
-use crate::plane::{Blank, PixelPlane};
-use crate::{Color, Rect};
+use super::bands::Band;
+use crate::color::Color;
+use crate::plane::PixelPlane;
+use crate::rect::Rect;
+use crate::state::{LoadOp, RenderState};
 
 // ANCHOR: background
 /// The background of a picture, and where it was before this one was begun.
@@ -12,19 +13,19 @@ pub(super) struct Background {
     color: Color,
     depth: f32,
     /// Which tiles hold nothing else, of the colors and of the depths.
-    blank: [Blank; 2],
+    blank: [Box<Blank>; 2],
 }
 
 impl Background {
     /// The background of a state. What is known of the planes is taken from them: they will be drawn on.
     pub(super) fn take(
         state: &RenderState,
-        window: Rect,
+        picture: Rect,
         colors: &mut PixelPlane<Color>,
         depths: &mut PixelPlane<f32>,
     ) -> Self {
-        let size = [window.right, window.top];
-        let blank = [colors.take_blank(size), depths.take_blank(size)];
+        let size = [picture.right, picture.top];
+        let blank = [Blank::take(colors, size), Blank::take(depths, size)];
         Self { load: state.load, color: state.clear_color, depth: state.clear_depth as f32, blank }
     }
 
@@ -61,9 +62,9 @@ impl Background {
             fill(band.colors, self.color);
             fill(band.depths, self.depth);
         } else {
-            for place in band.places(rect) {
-                band.colors[place.clone()].fill(self.color);
-                band.depths[place].fill(self.depth);
+            for range in band.ranges(rect) {
+                band.colors[range.clone()].fill(self.color);
+                band.depths[range].fill(self.depth);
             }
         }
     }
@@ -84,11 +85,54 @@ impl Background {
             }
         }
         let [of_colors, of_depths] = self.blank;
-        colors.set_blank(of_colors);
-        depths.set_blank(of_depths);
+        colors.leave_memo(of_colors);
+        depths.leave_memo(of_depths);
     }
 }
 // ANCHOR_END: background
+
+/// Which tiles of a plane are blank, that is, hold nothing but the background: a memo that is left with the plane, and
+/// void as soon as a value of it is written by others.
+#[derive(Debug, Default)]
+struct Blank {
+    /// Width and height of the picture whose tiles they are.
+    size: [i32; 2],
+    /// The bits of the background.
+    background: u32,
+    /// For each tile whether it is known to be blank. No tile: nothing is known.
+    tiles: Vec<bool>,
+}
+
+impl Blank {
+    /// Takes out what is known of the tiles of a picture of this size.
+    fn take<T>(plane: &mut PixelPlane<T>, size: [i32; 2]) -> Box<Self> {
+        let mut blank = plane.take_memo::<Self>().unwrap_or_default();
+        if blank.size != size {
+            blank.size = size;
+            blank.tiles.clear();
+        }
+        blank
+    }
+
+    /// Whether a tile is known to hold nothing but a background of these bits.
+    fn holds(&self, tile: usize, background: u32) -> bool {
+        self.background == background && self.tiles.get(tile) == Some(&true)
+    }
+
+    /// The plane has been cleared, and then only tiles that are not empty were drawn.
+    fn cleared(&mut self, background: u32, tiles: usize, is_empty: impl Fn(usize) -> bool) {
+        self.background = background;
+        self.tiles.clear();
+        self.tiles.extend((0..tiles).map(is_empty));
+    }
+
+    /// Tiles that are not empty were drawn.
+    fn drawn(&mut self, is_empty: impl Fn(usize) -> bool) {
+        for (tile, is_blank) in self.tiles.iter_mut().enumerate() {
+            *is_blank &= is_empty(tile);
+        }
+    }
+}
 
 /// Fills a plane with one value.
 ///

@@ -6,18 +6,15 @@ use std::ops::Range;
 use bytemuck::cast;
 use wide::{CmpEq, CmpGt, CmpLt, f64x4, i16x8, i32x8};
 
-use super::TILE_HEIGHT;
-use super::vertices::Place;
-use crate::Rect;
-use crate::edge::{SUBPIXELS, is_top_left};
-use crate::lanes::{LANES, Lanes};
+use super::bands::TILE_HEIGHT;
+use super::lanes::{LANES, Lanes};
+use super::snapped::{NO_FRACTIONS, SnappedPosition};
+use crate::exact::edge::{SUBPIXELS, is_top_left};
+use crate::rect::{Pixel, Rect};
 
 const PIXEL: i32 = SUBPIXELS as i32;
 
-/// 1.5 · 2⁵²: a sum with it has no room for fractions, and its last bits are the nearest whole number.
-pub(super) const NO_FRACTIONS: f64 = 6_755_399_441_055_744.0;
-
-/// The cross product of two places, seen from the origin: the edge function there of the edge between them.
+/// The cross product of two positions, seen from the origin: the edge function there of the edge between them.
 #[inline(always)]
 fn cross<T: Copy + std::ops::Mul<Output = T> + std::ops::Sub<Output = T>>(a: [T; 2], b: [T; 2]) -> T {
     a[0] * b[1] - a[1] * b[0]
@@ -36,7 +33,7 @@ fn cross<T: Copy + std::ops::Mul<Output = T> + std::ops::Sub<Output = T>>(a: [T;
 /// All numbers are whole, or halves, and have at most 53 bits: exact in `f64`. E and d are whole, so that a quotient with
 /// the half in it is never nearer to a whole number than 1/2d. So it may be a product with 1/d, which is rounded: for all
 /// columns that a picture has the error is smaller.
-pub(super) struct Setup {
+pub(super) struct TriangleSetup {
     /// The edge functions at the center of the pixel (0, 0), and how they change to the right and upwards.
     origin: f64x4,
     right: f64x4,
@@ -51,13 +48,13 @@ pub(super) struct Setup {
     pub(super) one_over_area: f32,
 }
 
-impl Setup {
-    pub(super) fn new(places: [Place; 3]) -> Self {
+impl TriangleSetup {
+    pub(super) fn new(positions: [SnappedPosition; 3]) -> Self {
         // Without change to the right a row is covered, or it is not: a bound far to the right of all, or to the left.
         const FAR: f64 = 1e6;
         let (zero, half, one, infinity) = (f64x4::ZERO, f64x4::HALF, f64x4::ONE, f64x4::splat(f64::INFINITY));
         // From the corners b, c, a to c, a, b.
-        let [a, b, c] = places.map(|place| place.map(|along| f64::from(along - PIXEL / 2)));
+        let [a, b, c] = positions.map(|position| position.map(|along| f64::from(along - PIXEL / 2)));
         let [from, to] = [[b, c, a], [c, a, b]]
             .map(|[i, j, k]| [0, 1].map(|axis| f64x4::new([i[axis], j[axis], k[axis], 0.0])));
         let origin = cross(from, to);
@@ -110,7 +107,7 @@ impl Spans {
     pub(super) const NONE: Self = Self { first: [0; ROWS], end: [0; ROWS], weights: [[0.0; ROWS]; 2] };
 
     /// Finds them in some rows, of which there are no more than a tile has, in a picture of so many columns.
-    pub(super) fn find(&mut self, setup: &Setup, rows: Range<i32>, columns: i32) {
+    pub(super) fn find(&mut self, setup: &TriangleSetup, rows: Range<i32>, columns: i32) {
         let number = f64x4::new([0.0, 1.0, 2.0, 3.0]) + f64x4::splat(f64::from(rows.start));
         let of_edge = |numbers: &f64x4, i: usize| f64x4::splat(numbers.as_array_ref()[i]);
         let [mut above, mut values] = [(&setup.above, &setup.above_up), (&setup.origin, &setup.up)]
@@ -153,8 +150,8 @@ impl Spans {
 fn whole_below(numbers: f64x4, list: &mut [i32]) -> f64x4 {
     // To the nearest of what is half less. The last bits of the sum are the whole number.
     let sum = (numbers - f64x4::HALF) + f64x4::splat(NO_FRACTIONS);
-    for (place, sum) in list.iter_mut().zip(sum.to_array()) {
-        *place = sum.to_bits() as i32;
+    for (whole, sum) in list.iter_mut().zip(sum.to_array()) {
+        *whole = sum.to_bits() as i32;
     }
     sum - f64x4::splat(NO_FRACTIONS)
 }
@@ -162,32 +159,32 @@ fn whole_below(numbers: f64x4, list: &mut [i32]) -> f64x4 {
 
 // ANCHOR: small
 /// How wide and high a small triangle is at most: then its coverage fits into 64 bits.
-pub(super) const SMALL: usize = 8;
+pub(super) const SMALL_SIDE: usize = 8;
 
 /// The three edges of a small triangle.
 ///
 /// Edge functions and their steps are whole, and less than 2²⁴ in 8 × 8 pixels of which the first lies in the triangle's
 /// box, though rows of the box may be missing below: 2302 · (2047 + 3839) at most. So they are exact in `f32`.
-pub(super) struct Small {
+pub(super) struct SmallTriangleSetup {
     /// The edge functions at the first center.
     start: [f32; 3],
     /// How they change from pixel to pixel, to the right and upwards.
     right: [f32; 3],
     up: [f32; 3],
     /// What keeps a tie out: 1 on edges that are neither top nor left.
-    shy: [f32; 3],
+    fill_rule_bias: [f32; 3],
     one_over_area: f32,
 }
 
 /// Steps from the first of eight pixels, as factors.
 pub(super) const STEPS: [f32; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 
-impl Small {
-    /// The edges, seen from the center of a pixel. Inlined, so that the places stay in registers.
+impl SmallTriangleSetup {
+    /// The edges, seen from the center of a pixel. Inlined, so that the positions stay in registers.
     #[inline(always)]
-    pub(super) fn new(places: [Place; 3], [x, y]: [i32; 2]) -> Self {
-        let [a, b, c] =
-            places.map(|place| [place[0] - (x * PIXEL + PIXEL / 2), place[1] - (y * PIXEL + PIXEL / 2)]);
+    pub(super) fn new(positions: [SnappedPosition; 3], (x, y): Pixel) -> Self {
+        let [a, b, c] = positions
+            .map(|position| [position[0] - (x * PIXEL + PIXEL / 2), position[1] - (y * PIXEL + PIXEL / 2)]);
         // The three of them make up the area.
         let start = [cross(b, c), cross(c, a), cross(a, b)];
         let area = start[0] + start[1] + start[2];
@@ -199,7 +196,7 @@ impl Small {
             start: start.map(|value| (value * sign) as f32),
             right: right.map(|step| (step * PIXEL) as f32),
             up: up.map(|step| (step * PIXEL) as f32),
-            shy: from_fn(|i| f32::from(u8::from(!is_top_left(right[i], up[i])))),
+            fill_rule_bias: from_fn(|i| f32::from(u8::from(!is_top_left(right[i], up[i])))),
             one_over_area: 1.0 / (area.abs() as f32),
         }
     }
@@ -216,13 +213,14 @@ impl Small {
         let columns = (1_u64 << area.columns().len()) - 1;
         // A zero is positive here: the first summand is never −0, and then no sum is.
         let mut values: [Lanes; 3] = from_fn(|i| {
-            Lanes::splat(self.start[i] - self.shy[i]) + Lanes::splat(self.right[i]) * Lanes::new(STEPS)
+            Lanes::splat(self.start[i] - self.fill_rule_bias[i])
+                + Lanes::splat(self.right[i]) * Lanes::new(STEPS)
         });
         let mut covered = 0;
         for y in 0..area.rows().len() {
             // None of the three values says, by its sign, that the pixel is outside.
             let outside = (values[0] | values[1] | values[2]).move_mask() as u8;
-            covered |= (u64::from(!outside) & columns) << (SMALL * y);
+            covered |= (u64::from(!outside) & columns) << (SMALL_SIDE * y);
             values = from_fn(|i| values[i] + Lanes::splat(self.up[i]));
         }
         covered
@@ -231,7 +229,7 @@ impl Small {
     /// The first covered column of each row, and how much the second and the third vertex weigh there. In rows without any
     /// what is answered means nothing.
     #[inline(always)]
-    pub(super) fn starts(&self, covered: u64) -> ([i32; SMALL], [[f32; SMALL]; 2]) {
+    pub(super) fn starts(&self, covered: u64) -> ([i32; SMALL_SIDE], [[f32; SMALL_SIDE]; 2]) {
         let rows = i16x8::from_u8x16_low(cast([covered.to_le(), 0]));
         // The exponent of a power of two is the number of its bit.
         let lowest: Lanes = i32x8::from_i16x8(rows & -rows).round_float();
@@ -249,14 +247,14 @@ impl Small {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::edge::{Coverage, center};
-    use crate::tiled::front::{box_of, is_at_most, shared};
+    use crate::exact::edge::{Coverage, center};
+    use crate::tiled::snapped::{box_of, is_at_most, shared};
     use proptest::prelude::*;
 
     const COLUMNS: i32 = 20_000;
 
     /// Corners in a square of some size, here or there, on a coarse grid or a fine one; some as thin as can be.
-    fn triangle() -> impl Strategy<Value = [Place; 3]> {
+    fn triangle() -> impl Strategy<Value = [SnappedPosition; 3]> {
         let corners = prop::array::uniform3((0.0..1.0, 0.0..1.0));
         let size = prop_oneof![Just(3.0), Just(30.0), Just(3000.0), Just(90_000.0)];
         // Half pixels: edges run through centers.
@@ -265,12 +263,13 @@ mod tests {
         (corners, size, grid, origin, any::<bool>()).prop_map(
             |(corners, size, grid, [left, bottom], is_thin)| {
                 let most = |along: i32| along.clamp(-1 << 24, 1 << 24) / grid * grid;
-                let place = |share: f64, origin: i32| most(origin * 8 + (share * size * 256.0) as i32);
-                let mut places = corners.map(|(x, y)| [place(x, left), place(y, bottom)]);
+                let coordinate = |share: f64, origin: i32| most(origin * 8 + (share * size * 256.0) as i32);
+                let mut positions = corners.map(|(x, y)| [coordinate(x, left), coordinate(y, bottom)]);
                 if is_thin {
-                    places[2] = [0, 1].map(|axis| (places[0][axis] + places[1][axis]) / 2 + axis as i32);
+                    positions[2] =
+                        [0, 1].map(|axis| (positions[0][axis] + positions[1][axis]) / 2 + axis as i32);
                 }
-                places
+                positions
             },
         )
     }
@@ -279,14 +278,14 @@ mod tests {
         #![proptest_config(ProptestConfig { cases: 2000, ..ProptestConfig::default() })]
 
         #[test]
-        fn spans_are_exact(places in triangle(), which in any::<prop::sample::Index>()) {
-            let Some(coverage) = Coverage::of(places.map(|place| place.map(i64::from))) else { return Ok(()) };
-            let window = Rect { left: 0, bottom: 0, right: COLUMNS, top: 100_000 };
-            let Some(area) = shared(box_of(places), window) else { return Ok(()) };
+        fn spans_are_exact(positions in triangle(), which in any::<prop::sample::Index>()) {
+            let Some(coverage) = Coverage::of(positions.map(|position| position.map(i64::from))) else { return Ok(()) };
+            let picture = Rect { left: 0, bottom: 0, right: COLUMNS, top: 100_000 };
+            let Some(area) = shared(box_of(positions), picture) else { return Ok(()) };
             let bottom = area.bottom + which.index(area.rows().len()) as i32;
             let rows = bottom..area.top.min(bottom + TILE_HEIGHT);
 
-            let setup = Setup::new(places);
+            let setup = TriangleSetup::new(positions);
             let mut spans = Spans::NONE;
             spans.find(&setup, rows.clone(), COLUMNS);
             let bits = |weights: [f32; 2]| weights.map(f32::to_bits);
@@ -306,19 +305,19 @@ mod tests {
 
         #[test]
         fn small_triangles_are_exact(
-            places in prop::array::uniform3([0..2304, 0..2304]),
+            positions in prop::array::uniform3([0..2304, 0..2304]),
             origin in -3..900,
             grid in prop_oneof![Just(1), Just(128)],
             below in 0..8_i32,
         ) {
-            let places = places.map(|place| place.map(|along| (origin * 256 + along) / grid * grid));
-            let Some(coverage) = Coverage::of(places.map(|place| place.map(i64::from))) else { return Ok(()) };
-            let whole = box_of(places);
-            prop_assume!(is_at_most(whole, SMALL as i32));
+            let positions = positions.map(|position| position.map(|along| (origin * 256 + along) / grid * grid));
+            let Some(coverage) = Coverage::of(positions.map(|position| position.map(i64::from))) else { return Ok(()) };
+            let whole = box_of(positions);
+            prop_assume!(is_at_most(whole, SMALL_SIDE as i32));
             // Rows may be missing below, which belong to another tile.
-            let window = Rect { bottom: i32::max(whole.bottom + below, 0), ..Rect::sized(2000, 2000) };
-            let Some(area) = shared(whole, window) else { return Ok(()) };
-            let small = Small::new(places, [area.left, area.bottom]);
+            let picture = Rect { bottom: i32::max(whole.bottom + below, 0), ..Rect::sized(2000, 2000) };
+            let Some(area) = shared(whole, picture) else { return Ok(()) };
+            let small = SmallTriangleSetup::new(positions, (area.left, area.bottom));
             let bits_of = |weights: [f32; 2]| weights.map(f32::to_bits);
             prop_assert_eq!(bits_of(small.weight_step()), bits_of(coverage.weight_step()));
             let covered = small.covered(area);

@@ -5,16 +5,16 @@ use std::ops::Range;
 use arrayvec::ArrayVec;
 use rayon::prelude::*;
 
-use super::vertices::{AMISS, Place, Projection, Triangle, Vertices};
-use super::{TILE_HEIGHT, TILE_WIDTH, tiles_of};
-use crate::Rect;
+use super::bands::{TILE_HEIGHT, TILE_WIDTH, tiles_of};
+use super::snapped::{SnappedPosition, box_of, shared, signed_area};
+use super::vertices::{NOT_REPRESENTABLE, Projection, Triangle, Vertices};
 use crate::area::Winding;
 use crate::clip::{NdcVertex, clip_triangle, fan};
-use crate::edge::SUBPIXELS;
 use crate::exact::{cut_to_guard_band, is_in_guard_band};
 use crate::mesh::Mesh;
-use crate::pipeline::RenderState;
+use crate::rect::Rect;
 use crate::shader::Shader;
+use crate::state::RenderState;
 
 /// Where triangles come from.
 pub(super) enum Source<'a, S: Shader<N>, const N: usize> {
@@ -53,7 +53,7 @@ struct Context<'a> {
     projection: Projection<'a>,
     culls_clockwise: bool,
     culls_counterclockwise: bool,
-    window: Rect,
+    picture: Rect,
     columns: usize,
     tiles: usize,
 }
@@ -65,15 +65,15 @@ impl Front {
         source: &Source<'_, S, N>,
         shader: &S,
         state: &RenderState,
-        window: Rect,
+        picture: Rect,
     ) {
-        let [columns, rows] = tiles_of(window);
+        let [columns, rows] = tiles_of(picture);
         let culls = |winding| state.cull.culls_winding(winding, state.front_face);
         let context = Context {
-            projection: Projection::new(state, window),
+            projection: Projection::new(state, picture),
             culls_clockwise: culls(Winding::Clockwise),
             culls_counterclockwise: culls(Winding::CounterClockwise),
-            window,
+            picture,
             columns,
             tiles: columns * rows,
         };
@@ -174,9 +174,9 @@ fn assemble<S: Shader<N>, const N: usize>(
     let corners = mesh.triangle(number);
     let outside = vertices.outside(corners);
     let (any, all) = (outside[0] | outside[1] | outside[2], outside[0] & outside[1] & outside[2]);
-    let beyond_a_plane = all & !AMISS != 0;
+    let beyond_a_plane = all & !NOT_REPRESENTABLE != 0;
     if any == 0 {
-        chunk.add(number as u32, vertices.places(corners), context);
+        chunk.add(number as u32, vertices.positions(corners), context);
     } else if !beyond_a_plane {
         let projection = &context.projection;
         // Clipping is rare, and needs the vertex as it was: shade it once more.
@@ -211,23 +211,25 @@ impl Chunk {
 
     fn add_vertices<const N: usize>(&mut self, piece: &[NdcVertex<N>; 3], context: &Context<'_>) {
         let number = self.extra.triangle_count() as u32;
-        if let Some(places) = self.extra.push(piece, &context.projection) {
-            self.add(EXTRA | number, places, context);
+        if let Some(positions) = self.extra.push(piece, &context.projection) {
+            self.add(EXTRA | number, positions, context);
         }
     }
 
     // ANCHOR: bin
     /// Puts a triangle into the bins of the tiles that its bounding box touches, if it is seen at all.
     ///
-    /// Inlined, so that the places stay in registers: what turns away costs little else.
+    /// Inlined, so that the positions stay in registers: what turns away costs little else.
     #[inline(always)]
-    fn add(&mut self, number: u32, places: [Place; 3], context: &Context<'_>) {
-        let area = signed_area(places);
+    fn add(&mut self, number: u32, positions: [SnappedPosition; 3], context: &Context<'_>) {
+        let area = signed_area(positions);
         let is_culled = if area > 0 { context.culls_counterclockwise } else { context.culls_clockwise };
         if area == 0 || is_culled {
             return;
         }
-        let Some(Rect { left, bottom, right, top }) = shared(box_of(places), context.window) else { return };
+        let Some(Rect { left, bottom, right, top }) = shared(box_of(positions), context.picture) else {
+            return;
+        };
         self.has_large |= right - left >= TILE_WIDTH && top - bottom >= TILE_HEIGHT;
         for row in bottom / TILE_HEIGHT..=(top - 1) / TILE_HEIGHT {
             for column in left / TILE_WIDTH..=(right - 1) / TILE_WIDTH {
@@ -236,44 +238,4 @@ impl Chunk {
         }
     }
     // ANCHOR_END: bin
-}
-
-/// Twice the area of a triangle in 1/256 × 1/256 pixel, positive against the clock.
-fn signed_area([a, b, c]: [Place; 3]) -> i64 {
-    let difference = |to: Place, axis: usize| i64::from(to[axis]) - i64::from(a[axis]);
-    difference(b, 0) * difference(c, 1) - difference(b, 1) * difference(c, 0)
-}
-
-/// The pixels whose centers lie in the bounding box of a triangle, in the picture or not.
-///
-/// As [`Coverage::bounding_box`](crate::edge::Coverage::bounding_box), but in the 32 bits that places have here: it is
-/// asked for every triangle, and once more in each of its tiles.
-#[inline(always)]
-pub(super) fn box_of([a, b, c]: [Place; 3]) -> Rect {
-    const PIXEL: i32 = SUBPIXELS as i32;
-    let range = |axis: usize| {
-        let (low, high) = (a[axis].min(b[axis]).min(c[axis]), a[axis].max(b[axis]).max(c[axis]));
-        // The first center not below `low`, and the one after the last not above `high`; shifts round down.
-        ((low + PIXEL / 2 - 1) >> 8, ((high - PIXEL / 2) >> 8) + 1)
-    };
-    let ((left, right), (bottom, top)) = (range(0), range(1));
-    Rect { left, bottom, right, top }
-}
-
-/// Whether a rectangle is no larger than a square.
-#[inline(always)]
-pub(super) fn is_at_most(Rect { left, bottom, right, top }: Rect, side: i32) -> bool {
-    right - left <= side && top - bottom <= side
-}
-
-/// What two rectangles share, if anything.
-#[inline(always)]
-pub(super) fn shared(a: Rect, b: Rect) -> Option<Rect> {
-    let rect = Rect {
-        left: a.left.max(b.left),
-        bottom: a.bottom.max(b.bottom),
-        right: a.right.min(b.right),
-        top: a.top.min(b.top),
-    };
-    (rect.left < rect.right && rect.bottom < rect.top).then_some(rect)
 }

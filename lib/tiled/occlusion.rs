@@ -1,15 +1,15 @@
 //! What is hidden in all of a tile need not be drawn there.
 
-use super::edges::SMALL;
-use super::front::{box_of, is_at_most, shared};
-use super::tile::Frame;
+use super::edges::SMALL_SIDE;
+use super::frame::Frame;
+use super::snapped::{box_of, is_at_most, shared};
 use super::vertices::Triangle;
-use crate::Rect;
-use crate::edge::{Coverage, Subpixel, center};
+use crate::exact::edge::{Coverage, Subpixel, center};
+use crate::rect::Rect;
 use crate::shader::Shader;
 
 /// No depth is behind this one.
-pub(super) const NOTHING_IS_HIDDEN: f64 = f64::INFINITY;
+pub(super) const NO_OCCLUDER: f64 = f64::INFINITY;
 
 // ANCHOR: occlusion
 /// The depth behind which nothing can be seen in a tile: that of the nearest large triangle that covers all of it, where
@@ -17,8 +17,8 @@ pub(super) const NOTHING_IS_HIDDEN: f64 = f64::INFINITY;
 ///
 /// ```text
 ///   depth
-///     ▲  ──────────────── A       nowhere nearer than `behind`: hidden, whether it comes first or last
-///     │ ─ ─ ─ ─ ─ ─ ─ ─ ╱ ─ behind
+///     ▲  ──────────────── A       nowhere nearer than that: hidden, whether first or last
+///     │ ─ ─ ─ ─ ─ ─ ─ ─ ╱ ─ the occluder depth
 ///     │            ╱
 ///     │      ╱                    B covers the tile
 ///     │ ╱
@@ -27,31 +27,31 @@ pub(super) const NOTHING_IS_HIDDEN: f64 = f64::INFINITY;
 /// ```
 ///
 /// Only with the default options, under which the nearest fragment stays.
-pub(super) fn hidden_behind<S: Shader<N>, const N: usize>(
+pub(super) fn occluder_depth<S: Shader<N>, const N: usize>(
     frame: &Frame<'_, S, N>,
     number: usize,
     tile: Rect,
 ) -> f64 {
-    let mut behind = NOTHING_IS_HIDDEN;
+    let mut nearest = NO_OCCLUDER;
     if !frame.is_plain {
-        return behind;
+        return nearest;
     }
     frame.front.each_triangle_in(frame.source, number, |triangle| {
-        let whole = box_of(triangle.places);
+        let whole = box_of(triangle.positions);
         // What goes through the queue is not noted if the shader throws it away.
-        let is_large = !is_at_most(whole, SMALL as i32);
+        let is_large = !is_at_most(whole, SMALL_SIDE as i32);
         if is_large
             && shared(whole, tile) == Some(tile)
             && let Some(coverage) = coverage_of(triangle)
             && corners(tile).into_iter().all(|corner| coverage.covers(coverage.edge_values(corner)))
         {
-            behind = behind.min(depth_range(&coverage, triangle, tile)[1]);
+            nearest = nearest.min(depth_range(&coverage, triangle, tile)[1]);
         }
     });
-    behind
+    nearest
 }
 
-/// The outermost centers of a rectangle: what changes evenly has its extremes there.
+/// The outermost centers of a rectangle: what changes linearly has its extremes there.
 fn corners(Rect { left, bottom, right, top }: Rect) -> [Subpixel; 4] {
     [(left, bottom), (right - 1, bottom), (left, top - 1), (right - 1, top - 1)].map(|(x, y)| center(x, y))
 }
@@ -63,7 +63,7 @@ pub(super) fn coverage_of(triangle: Triangle<'_>) -> Option<Coverage> {
 
 /// The least and the greatest depth that a triangle can have in a rectangle, with room for rounding.
 pub(super) fn depth_range(coverage: &Coverage, triangle: Triangle<'_>, rect: Rect) -> [f64; 2] {
-    let [first, second, third] = triangle.records.map(|record| f64::from(record[0].as_array_ref()[1]));
+    let [first, second, third] = triangle.packed.map(|packed| f64::from(packed[0].as_array_ref()[1]));
     let (to_second, to_third) = (second - first, third - first);
     let depths = corners(rect).map(|corner| {
         let [second, third] = coverage.weights::<f64>(coverage.edge_values(corner));

@@ -1,40 +1,27 @@
 //! One tile: coverage, depth test, shading and writing of the triangles in its bin.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 
 use prefetch_index::prefetch_index;
 use wide::{f32x8, i32x8};
 
-use super::edges::{SMALL, STEPS, Setup, Small, Spans};
-use super::front::{Front, Source, box_of, is_at_most, shared};
-use super::occlusion::{NOTHING_IS_HIDDEN, coverage_of, depth_range, hidden_behind};
-use super::record::{Ways, even};
+use super::bands::{Band, TILE_HEIGHT};
+use super::edges::{SMALL_SIDE, STEPS, SmallTriangleSetup, Spans, TriangleSetup};
+use super::frame::Frame;
+use super::lanes::{ALL, LANES, LaneMask, Lanes, is_greater, is_less_or_equal, packed};
+use super::occlusion::{NO_OCCLUDER, coverage_of, depth_range, occluder_depth};
+use super::packed::{PackedTriangleVaryings, linear};
+use super::snapped::{box_of, is_at_most, shared};
 use super::vertices::Triangle;
-use super::{Band, TILE_HEIGHT};
+use crate::color::Color;
 use crate::depth::DepthTest;
-use crate::edge::gradients_between;
+use crate::exact::edge::gradients_between;
 use crate::interpolate::{Interpolation, Projected};
-use crate::lanes::{ALL, LANES, LaneMask, Lanes, is_greater, is_less_or_equal, packed};
-use crate::merge::{Blend, Merge};
-use crate::pipeline::RenderState;
+use crate::merge::{Blend, Merge, Rounding};
 use crate::real::{Mask, Real};
+use crate::rect::Rect;
 use crate::shader::{Paint, Shaded, Shader};
-use crate::varyings::{Derivatives, EvenVaryings};
-use crate::{Color, Rect};
-
-/// What all tiles of a picture share.
-pub(super) struct Frame<'a, S: Shader<N>, const N: usize> {
-    pub(super) shader: &'a S,
-    pub(super) state: &'a RenderState,
-    pub(super) front: &'a Front,
-    pub(super) source: &'a Source<'a, S, N>,
-    /// Whether all options that matter for a pixel have their default values: the most common case.
-    pub(super) is_plain: bool,
-    /// How wide the picture is.
-    pub(super) columns: i32,
-    /// Whether the shader has been seen to throw fragments of larger triangles away: only these can hide others.
-    pub(super) discards: AtomicBool,
-}
+use crate::varyings::{Derivatives, LinearVaryings};
 
 /// The tile of a band that is being drawn.
 pub(super) struct Tile<'a> {
@@ -42,7 +29,7 @@ pub(super) struct Tile<'a> {
     /// What of the tile lies in the picture.
     rect: Rect,
     /// Nothing that is deeper than this can be seen.
-    behind: f64,
+    occluder_depth: f64,
     queue: Queue,
     /// What a larger one covers.
     spans: Spans,
@@ -52,18 +39,9 @@ pub(super) struct Tile<'a> {
 struct Queue {
     count: usize,
     /// 1/ω, depth, V/ω of each fragment.
-    records: [f32x8; LANES],
-    /// Where in the band each fragment is.
-    places: [usize; LANES],
-}
-
-impl<S: Shader<N>, const N: usize> Frame<'_, S, N> {
-    /// Notes whether the shader has thrown away any.
-    fn note(&self, thrown_away: i32) {
-        if thrown_away != 0 {
-            self.discards.store(true, Ordering::Relaxed);
-        }
-    }
+    packed: [f32x8; LANES],
+    /// Where in the band each fragment is: an index.
+    indices: [usize; LANES],
 }
 
 impl<'a> Tile<'a> {
@@ -72,8 +50,8 @@ impl<'a> Tile<'a> {
         Self {
             band,
             rect: Rect::sized(0, 0),
-            behind: NOTHING_IS_HIDDEN,
-            queue: Queue { count: 0, records: [f32x8::ZERO; LANES], places: [0; LANES] },
+            occluder_depth: NO_OCCLUDER,
+            queue: Queue { count: 0, packed: [f32x8::ZERO; LANES], indices: [0; LANES] },
             spans: Spans::NONE,
         }
     }
@@ -87,12 +65,12 @@ impl<'a> Tile<'a> {
     ) {
         self.rect = rect;
         let may_hide = frame.front.has_large_triangles() && !frame.discards.load(Ordering::Relaxed);
-        self.behind = if may_hide { hidden_behind(frame, number, rect) } else { NOTHING_IS_HIDDEN };
+        self.occluder_depth = if may_hide { occluder_depth(frame, number, rect) } else { NO_OCCLUDER };
         self.draw_all(frame, number);
-        if self.behind < NOTHING_IS_HIDDEN && frame.discards.load(Ordering::Relaxed) {
+        if self.occluder_depth < NO_OCCLUDER && frame.discards.load(Ordering::Relaxed) {
             // What seemed to cover the tile may have holes: once more, with all triangles. Where the nearest stays, and of
             // equally near ones the last, drawing twice is drawing once.
-            self.behind = NOTHING_IS_HIDDEN;
+            self.occluder_depth = NO_OCCLUDER;
             self.draw_all(frame, number);
         }
     }
@@ -110,16 +88,16 @@ impl<'a> Tile<'a> {
         frame: &Frame<'_, S, N>,
         triangle: Triangle<'_>,
     ) {
-        let whole = box_of(triangle.places);
+        let whole = box_of(triangle.positions);
         let Some(area) = shared(whole, self.rect) else { return };
         // Values are stepped from the first pixel of a row. It must be in this tile.
-        let is_small = is_at_most(whole, SMALL as i32) && whole.left >= self.rect.left;
-        // A record of more than one block does not fit into the queue, nor do the gradients of a triangle.
+        let is_small = is_at_most(whole, SMALL_SIDE as i32) && whole.left >= self.rect.left;
+        // What takes more than one block does not fit into the queue, nor do the gradients of a triangle.
         if is_small && 2 + N <= LANES && !S::USES_DERIVATIVES {
             self.draw_small(frame, triangle, area);
         } else {
-            let may_be_hidden = self.behind < NOTHING_IS_HIDDEN && !is_at_most(whole, TILE_HEIGHT);
-            let is_hidden = |coverage| depth_range(&coverage, triangle, area)[0] > self.behind;
+            let may_be_hidden = self.occluder_depth < NO_OCCLUDER && !is_at_most(whole, TILE_HEIGHT);
+            let is_hidden = |coverage| depth_range(&coverage, triangle, area)[0] > self.occluder_depth;
             if !(may_be_hidden && coverage_of(triangle).is_some_and(is_hidden)) {
                 self.draw_spans(frame, triangle, area);
             }
@@ -134,20 +112,20 @@ impl<'a> Tile<'a> {
         triangle: Triangle<'_>,
         area: Rect,
     ) {
-        let setup = Small::new(triangle.places, [area.left, area.bottom]);
-        let ways = Ways::<N>::of(triangle);
-        let step = ways.change(setup.weight_step()).first;
+        let setup = SmallTriangleSetup::new(triangle.positions, (area.left, area.bottom));
+        let varyings = PackedTriangleVaryings::<N>::of(triangle);
+        let step = varyings.change(setup.weight_step()).first;
         let mut covered = setup.covered(area);
         let (firsts, weights) = setup.starts(covered);
-        let (corner, width) = (self.band.place([area.left, area.bottom]), self.band.stride);
+        let (corner, width) = (self.band.index((area.left, area.bottom)), self.band.stride);
         while covered != 0 {
             let bit = covered.trailing_zeros() as usize;
             covered &= covered - 1;
-            let (row, column) = (bit / SMALL, bit % SMALL);
-            let start = ways.at([weights[0][row], weights[1][row]]).first;
-            // The remainder only tells that it is a place in the list.
-            let record = start + step * f32x8::splat(STEPS[(column - firsts[row] as usize) % SMALL]);
-            self.enqueue(frame, record, corner + row * width + column);
+            let (row, column) = (bit / SMALL_SIDE, bit % SMALL_SIDE);
+            let start = varyings.at([weights[0][row], weights[1][row]]).first;
+            // The remainder only tells that it is in the list.
+            let packed = start + step * f32x8::splat(STEPS[(column - firsts[row] as usize) % SMALL_SIDE]);
+            self.enqueue(frame, packed, corner + row * width + column);
         }
     }
 
@@ -155,15 +133,15 @@ impl<'a> Tile<'a> {
     fn enqueue<S: Shader<N>, const N: usize>(
         &mut self,
         frame: &Frame<'_, S, N>,
-        record: f32x8,
-        place: usize,
+        packed: f32x8,
+        index: usize,
     ) {
         // Stored depths never grow: what fails now fails later.
-        if frame.is_plain && record.as_array_ref()[1] > self.band.depths[place] {
+        if frame.is_plain && packed.as_array_ref()[1] > self.band.depths[index] {
             return;
         }
-        self.queue.records[self.queue.count] = record;
-        self.queue.places[self.queue.count] = place;
+        self.queue.packed[self.queue.count] = packed;
+        self.queue.indices[self.queue.count] = index;
         self.queue.count += 1;
         if self.queue.count == LANES {
             self.flush(frame);
@@ -185,19 +163,19 @@ impl<'a> Tile<'a> {
         let count = std::mem::take(&mut self.queue.count);
         let Merge { depth_test, depth_write, blend } =
             if PLAIN { Merge::default() } else { frame.state.merge };
-        let numbers = f32x8::transpose(self.queue.records);
-        let even = even(|k| numbers.get(k).copied().unwrap_or(f32x8::ZERO));
+        let numbers = f32x8::transpose(self.queue.packed);
+        let linear = linear(|k| numbers.get(k).copied().unwrap_or(f32x8::ZERO));
         let interpolation = if PLAIN { Interpolation::PerspectiveCorrect } else { frame.state.interpolation };
-        let point: Projected<Lanes, N> = even.multiplied(interpolation);
+        let point: Projected<Lanes, N> = linear.multiplied(interpolation);
         let is_linear = PLAIN || frame.state.depth_encoding.is_linear_on_screen();
-        let depths = if is_linear { even.depth } else { point.w }.to_array();
+        let depths = if is_linear { linear.depth } else { point.w }.to_array();
         let shaded: Shaded<Lanes> = frame.shader.fragment(point.values);
         let kept = shaded.keep.bits();
         let opaque = opaque(shaded.color).to_array();
         let channels = shaded.color.channels();
         for lane in (0..count).filter(|lane| kept >> lane & 1 == 1) {
-            let place = self.queue.places[lane];
-            let (color, depth) = (&mut self.band.colors[place], &mut self.band.depths[place]);
+            let index = self.queue.indices[lane];
+            let (color, depth) = (&mut self.band.colors[index], &mut self.band.depths[index]);
             if !depth_test.passes(depths[lane], *depth) {
                 continue;
             }
@@ -221,7 +199,7 @@ impl<'a> Tile<'a> {
         area: Rect,
     ) {
         self.flush(frame);
-        let setup = Setup::new(triangle.places);
+        let setup = TriangleSetup::new(triangle.positions);
         self.spans.find(&setup, area.rows(), frame.columns);
         if frame.is_plain {
             draw_rows::<true, S, N>(frame, triangle, &setup, &self.spans, area, &mut self.band);
@@ -231,13 +209,6 @@ impl<'a> Tile<'a> {
     }
 }
 
-/// Whether these options for a pixel are the default ones.
-pub(super) fn is_plain(state: &RenderState) -> bool {
-    state.merge == Merge::default()
-        && state.depth_encoding.is_linear_on_screen()
-        && state.interpolation == Interpolation::PerspectiveCorrect
-}
-
 /// Draws the rows of a triangle, eight pixels at a time from the first that is covered.
 ///
 /// A function by itself, so that the compiler knows that nothing that is written here changes what is read.
@@ -245,42 +216,42 @@ pub(super) fn is_plain(state: &RenderState) -> bool {
 fn draw_rows<const PLAIN: bool, S: Shader<N>, const N: usize>(
     frame: &Frame<'_, S, N>,
     triangle: Triangle<'_>,
-    setup: &Setup,
+    setup: &TriangleSetup,
     spans: &Spans,
     area: Rect,
     band: &mut Band<'_>,
 ) {
     let (bottom_left, stride, to_next_band) =
-        (band.place([area.left, area.bottom]), band.stride, band.to_next_band);
+        (band.index((area.left, area.bottom)), band.stride, band.to_next_band);
     let (colors, depths) = (&mut *band.colors, &mut *band.depths);
-    let ways = Ways::<N>::of(triangle);
-    let step = ways.change(setup.weight_step()).spread();
+    let varyings = PackedTriangleVaryings::<N>::of(triangle);
+    let step = varyings.change(setup.weight_step()).spread();
     let gradients = S::USES_DERIVATIVES.then(|| {
         let gradients = gradients_between(triangle.vertices());
-        gradients.map(|weights| ways.change(weights).spread())
+        gradients.map(|weights| varyings.change(weights).spread())
     });
     let last = colors.len() - LANES;
     let mut thrown_away = 0;
     for row in 0..area.rows().len() {
         let (first, covered, weights) = spans.row(row, &area.columns());
-        let start = ways.at(weights).spread();
+        let start = varyings.at(weights).spread();
         let mut right = Lanes::splat((covered.start - first) as f32) + Lanes::new(STEPS);
-        let mut place = bottom_left + row * stride + (covered.start - area.left) as usize;
+        let mut index = bottom_left + row * stride + (covered.start - area.left) as usize;
         let mut count = covered.end - covered.start;
         while count > 0 {
             let mut bits = ALL >> (LANES as i32 - count).max(0);
-            if place > last {
+            if index > last {
                 // Fewer than eight are left of the band: the group begins as many before.
-                let before = (place - last) as i32;
+                let before = (index - last) as i32;
                 bits <<= before;
                 right -= Lanes::splat(before as f32);
-                place = last;
+                index = last;
             }
-            let (colors, depths) = (eight(colors, place), eight(depths, place));
+            let (colors, depths) = (eight(colors, index), eight(depths, index));
             fetch_ahead(to_next_band, colors, depths);
-            let even = start.moved(&step, right);
-            thrown_away |= draw_group::<PLAIN, S, N>(frame, even, &gradients, bits, colors, depths);
-            place += LANES;
+            let linear = start.moved(&step, right);
+            thrown_away |= draw_group::<PLAIN, S, N>(frame, linear, &gradients, bits, colors, depths);
+            index += LANES;
             count -= LANES as i32;
             right += Lanes::splat(LANES as f32);
         }
@@ -307,8 +278,8 @@ fn fetch_ahead(to_next_band: usize, colors: &[Color; LANES], depths: &[f32; LANE
 #[inline(always)]
 fn draw_group<const PLAIN: bool, S: Shader<N>, const N: usize>(
     frame: &Frame<'_, S, N>,
-    even: EvenVaryings<Lanes, N>,
-    gradients: &Option<[EvenVaryings<Lanes, N>; 2]>,
+    linear: LinearVaryings<Lanes, N>,
+    gradients: &Option<[LinearVaryings<Lanes, N>; 2]>,
     covered: i32,
     colors: &mut [Color; LANES],
     depths: &mut [f32; LANES],
@@ -318,7 +289,7 @@ fn draw_group<const PLAIN: bool, S: Shader<N>, const N: usize>(
 
     // Depth first: what is hidden need not be shaded.
     let is_linear = PLAIN || state.depth_encoding.is_linear_on_screen();
-    let depth = if is_linear { even.depth } else { even.multiplied(interpolation).w };
+    let depth = if is_linear { linear.depth } else { linear.multiplied(interpolation).w };
     let stored = Lanes::new(*depths);
     let test = if PLAIN { DepthTest::LessOrEqual } else { state.merge.depth_test };
     let seen = covered & passes(test, depth, stored).bits();
@@ -326,7 +297,7 @@ fn draw_group<const PLAIN: bool, S: Shader<N>, const N: usize>(
         return 0;
     }
 
-    let point = even.multiplied(interpolation);
+    let point = linear.multiplied(interpolation);
     let shaded = match gradients {
         Some(gradients) => {
             let [dx, dy] = gradients.map(|change| change.derivative(&point, interpolation));
@@ -378,5 +349,5 @@ fn opaque(color: Paint<Lanes>) -> i32x8 {
 
 fn blended(blend: Blend, color: [f32; 4], there: Color) -> Color {
     let there = there.to_f64().map(|channel| channel as f32);
-    crate::framebuffer::Rounding::Nearest.color(blend.apply(color, there))
+    Rounding::Nearest.color(blend.apply(color, there))
 }

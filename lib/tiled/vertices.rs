@@ -8,54 +8,51 @@ use glam::{DVec3, DVec4, dvec3};
 use rayon::prelude::*;
 use wide::{CmpEq, CmpGe, CmpGt, CmpLe, f32x8, f64x4, i64x4};
 
-use super::edges::NO_FRACTIONS;
-use crate::Rect;
+use super::lanes::LANES;
+use super::snapped::{NO_FRACTIONS, SnappedPosition};
 use crate::clip::{ClipTest, ClipVertex, NdcVertex, Plane};
-use crate::edge::{FARTHEST, SUBPIXELS, Subpixel, snap};
 use crate::exact::GUARD_BAND;
+use crate::exact::edge::{FARTHEST, SUBPIXELS, Subpixel, snap};
 use crate::interpolate::Interpolation;
-use crate::lanes::LANES;
 use crate::mesh::Mesh;
-use crate::pipeline::RenderState;
+use crate::rect::Rect;
 use crate::shader::Shader;
+use crate::state::RenderState;
 use crate::transform::Viewport;
-use crate::varyings::EvenVaryings;
-
-/// A place on the screen in 1/256 pixel.
-pub(super) type Place = [i32; 2];
+use crate::varyings::LinearVaryings;
 
 /// Vertices, made ready for triangles.
 #[derive(Debug, Default)]
 pub(super) struct Vertices {
-    places: Vec<Place>,
+    positions: Vec<SnappedPosition>,
     /// Which planes a vertex lies outside of, a bit each; and the bit below.
     outside: Vec<u8>,
     /// 1/ω, depth, V/ω: as many blocks of eight numbers for a vertex as it takes.
-    records: Vec<f32x8>,
+    packed: Vec<f32x8>,
 }
 
 /// The vertex is not finite, beyond the guard band or too far away on the screen: triangles of it cannot be drawn as they
 /// are.
-pub(super) const AMISS: u8 = 1 << 7;
+pub(super) const NOT_REPRESENTABLE: u8 = 1 << 7;
 
 /// A triangle as a tile needs it.
 #[derive(Clone, Copy)]
 pub(super) struct Triangle<'a> {
-    pub(super) places: [Place; 3],
-    pub(super) records: [&'a [f32x8]; 3],
+    pub(super) positions: [SnappedPosition; 3],
+    pub(super) packed: [&'a [f32x8]; 3],
 }
 
 impl Triangle<'_> {
-    /// The places, as [`edge`](crate::edge) knows them.
+    /// The positions, as [`edge`](crate::exact::edge) knows them.
     pub(super) fn vertices(&self) -> [Subpixel; 3] {
-        self.places.map(|place| place.map(i64::from))
+        self.positions.map(|position| position.map(i64::from))
     }
 }
 
 /// So many vertices are divided and snapped at a time.
 const AT_A_TIME: usize = 4;
 
-/// How many blocks of eight numbers a record with so many varyings has.
+/// How many blocks of eight numbers so many varyings take.
 const fn blocks_of(varyings: usize) -> usize {
     (2 + varyings).div_ceil(LANES)
 }
@@ -63,9 +60,9 @@ const fn blocks_of(varyings: usize) -> usize {
 impl Vertices {
     /// Forgets all.
     pub(super) fn clear(&mut self) {
-        self.places.clear();
+        self.positions.clear();
         self.outside.clear();
-        self.records.clear();
+        self.packed.clear();
     }
 
     // ANCHOR: shade_vertices
@@ -80,27 +77,23 @@ impl Vertices {
         // Rounded up to a multiple of four. What is too much repeats the last vertex, and no triangle names it.
         let count = vertices.len().next_multiple_of(AT_A_TIME);
         let blocks = blocks_of(N);
-        self.places.resize(count, [0; 2]);
+        self.positions.resize(count, [0; 2]);
         self.outside.resize(count, 0);
-        self.records.resize(count * blocks, f32x8::ZERO);
-        self.each_part(blocks, &|first, Slots { places, outside, records }| {
+        self.packed.resize(count * blocks, f32x8::ZERO);
+        self.each_part(blocks, &|first, Slots { positions, outside, packed }| {
             // Computed again: so it is a constant in here, and not a captured number.
             let blocks = blocks_of(N);
-            let slots = places.as_chunks_mut().0.iter_mut().zip(outside.as_chunks_mut().0);
-            let slots = slots.zip(records.chunks_exact_mut(AT_A_TIME * blocks));
-            for (four, ((places, outside), records)) in slots.enumerate() {
+            let slots = positions.as_chunks_mut().0.iter_mut().zip(outside.as_chunks_mut().0);
+            let slots = slots.zip(packed.chunks_exact_mut(AT_A_TIME * blocks));
+            for (four, ((positions, outside), packed)) in slots.enumerate() {
                 let number = |i: usize| (first + four * AT_A_TIME + i).min(vertices.len() - 1);
                 let clip: [ClipVertex<N>; AT_A_TIME] = from_fn(|i| shader.vertex(&vertices[number(i)]));
                 let ndc;
-                (*places, *outside, ndc) = projection.project(&clip);
-                let records = records.chunks_exact_mut(blocks);
-                for ((vertex, position), record) in clip.iter().zip(ndc).zip(records) {
+                (*positions, *outside, ndc) = projection.project(&clip);
+                let packed = packed.chunks_exact_mut(blocks);
+                for ((vertex, position), packed) in clip.iter().zip(ndc).zip(packed) {
                     let ClipVertex { position: DVec4 { w, .. }, varyings } = *vertex;
-                    write_record(
-                        &NdcVertex { position, w, varyings },
-                        projection.state.interpolation,
-                        record,
-                    );
+                    pack(&NdcVertex { position, w, varyings }, projection.state.interpolation, packed);
                 }
             }
         });
@@ -109,14 +102,14 @@ impl Vertices {
 }
 
 impl Vertices {
-    /// Hands the vertices out in parts, to all threads; `shade` is told the number of the first in each.
+    /// Hands the vertices out in parts, to all threads; `shade` gets the number of the first in each.
     fn each_part(&mut self, blocks: usize, shade: &(dyn Fn(usize, Slots<'_>) + Sync)) {
         const PART: usize = 256 * AT_A_TIME;
-        let places = self.places.par_chunks_mut(PART);
-        let parts = places.zip(self.outside.par_chunks_mut(PART));
-        let parts = parts.zip(self.records.par_chunks_mut(PART * blocks)).enumerate();
-        parts.for_each(|(i, ((places, outside), records))| {
-            shade(i * PART, Slots { places, outside, records });
+        let positions = self.positions.par_chunks_mut(PART);
+        let parts = positions.zip(self.outside.par_chunks_mut(PART));
+        let parts = parts.zip(self.packed.par_chunks_mut(PART * blocks)).enumerate();
+        parts.for_each(|(i, ((positions, outside), packed))| {
+            shade(i * PART, Slots { positions, outside, packed });
         });
     }
 
@@ -125,27 +118,27 @@ impl Vertices {
         &mut self,
         corners: &[NdcVertex<N>; 3],
         projection: &Projection<'_>,
-    ) -> Option<[Place; 3]> {
-        let [a, b, c] = corners.each_ref().map(|vertex| projection.place_of(vertex));
-        let places = [a?, b?, c?];
-        let first = self.records.len();
-        self.places.extend(places);
-        self.records.resize(first + 3 * blocks_of(N), f32x8::ZERO);
-        for (vertex, record) in corners.iter().zip(self.records[first..].chunks_exact_mut(blocks_of(N))) {
-            write_record(vertex, projection.state.interpolation, record);
+    ) -> Option<[SnappedPosition; 3]> {
+        let [a, b, c] = corners.each_ref().map(|vertex| projection.snapped_position(vertex));
+        let positions = [a?, b?, c?];
+        let first = self.packed.len();
+        self.positions.extend(positions);
+        self.packed.resize(first + 3 * blocks_of(N), f32x8::ZERO);
+        for (vertex, packed) in corners.iter().zip(self.packed[first..].chunks_exact_mut(blocks_of(N))) {
+            pack(vertex, projection.state.interpolation, packed);
         }
-        Some(places)
+        Some(positions)
     }
 
     /// How many triangles have been pushed.
     pub(super) fn triangle_count(&self) -> usize {
-        self.places.len() / 3
+        self.positions.len() / 3
     }
 
     /// Where vertices are.
     #[inline(always)]
-    pub(super) fn places(&self, corners: [usize; 3]) -> [Place; 3] {
-        corners.map(|corner| self.places[corner])
+    pub(super) fn positions(&self, corners: [usize; 3]) -> [SnappedPosition; 3] {
+        corners.map(|corner| self.positions[corner])
     }
 
     /// What each of them lies outside of.
@@ -156,29 +149,29 @@ impl Vertices {
 
     /// A triangle of vertices with so many varyings.
     ///
-    /// Inlined, as [`Small::new`](super::edges::Small::new) is: places that are written to memory here would be read there
+    /// Inlined, as [`SmallTriangleSetup::new`](super::edges::SmallTriangleSetup::new) is: positions that are written to memory here would be read there
     /// in wider pieces, for which the processor waits.
     #[inline(always)]
     pub(super) fn triangle<const N: usize>(&self, corners: [usize; 3]) -> Triangle<'_> {
         let blocks = blocks_of(N);
         Triangle {
-            places: self.places(corners),
-            records: corners.map(|corner| &self.records[corner * blocks..(corner + 1) * blocks]),
+            positions: self.positions(corners),
+            packed: corners.map(|corner| &self.packed[corner * blocks..(corner + 1) * blocks]),
         }
     }
 }
 
 /// Some vertices, one after the other, to be filled.
 struct Slots<'a> {
-    places: &'a mut [Place],
+    positions: &'a mut [SnappedPosition],
     outside: &'a mut [u8],
-    records: &'a mut [f32x8],
+    packed: &'a mut [f32x8],
 }
 
-fn write_record<const N: usize>(vertex: &NdcVertex<N>, interpolation: Interpolation, record: &mut [f32x8]) {
-    let corner = EvenVaryings::<f32, N>::new(vertex, interpolation);
+fn pack<const N: usize>(vertex: &NdcVertex<N>, interpolation: Interpolation, packed: &mut [f32x8]) {
+    let corner = LinearVaryings::<f32, N>::new(vertex, interpolation);
     let mut numbers = [corner.distance, corner.depth].into_iter().chain(corner.values);
-    for block in record {
+    for block in packed {
         *block = f32x8::new(from_fn(|_| numbers.next().unwrap_or(0.0)));
     }
 }
@@ -187,19 +180,19 @@ fn write_record<const N: usize>(vertex: &NdcVertex<N>, interpolation: Interpolat
 pub(super) struct Projection<'a> {
     pub(super) state: &'a RenderState,
     pub(super) planes: ArrayVec<Plane, 6>,
-    sides: ArrayVec<Side, 6>,
+    wide_planes: ArrayVec<WidePlane, 6>,
     viewport: Viewport,
 }
 
 /// A plane, each number for four vertices.
-struct Side {
+struct WidePlane {
     normal: [f64x4; 4],
     offset: f64x4,
     /// Its bit.
     bit: i64,
 }
 
-impl Side {
+impl WidePlane {
     fn new((number, plane): (usize, &Plane)) -> Self {
         let (normal, offset) = plane.coefficients();
         Self { normal: normal.map(f64x4::splat), offset: f64x4::splat(offset), bit: 1 << number }
@@ -207,18 +200,18 @@ impl Side {
 }
 
 /// Four vertices: where they are, what each of them lies outside of, and their positions in NDC.
-type FourVertices = ([Place; AT_A_TIME], [u8; AT_A_TIME], [DVec3; AT_A_TIME]);
+type FourVertices = ([SnappedPosition; AT_A_TIME], [u8; AT_A_TIME], [DVec3; AT_A_TIME]);
 
 impl<'a> Projection<'a> {
-    pub(super) fn new(state: &'a RenderState, window: Rect) -> Self {
+    pub(super) fn new(state: &'a RenderState, picture: Rect) -> Self {
         let planes = state.clip_volume.planes(state.depth_range);
-        let sides = planes.iter().enumerate().map(Side::new).collect();
-        Self { state, planes, sides, viewport: state.viewport_in(window) }
+        let wide_planes = planes.iter().enumerate().map(WidePlane::new).collect();
+        Self { state, planes, wide_planes, viewport: state.viewport_in(picture) }
     }
 
     /// Where on the screen a vertex is, if it is near enough.
-    fn place_of<const N: usize>(&self, vertex: &NdcVertex<N>) -> Option<Place> {
-        snap(self.viewport.pixel_areas(vertex.position)).map(|place| place.map(|along| along as i32))
+    fn snapped_position<const N: usize>(&self, vertex: &NdcVertex<N>) -> Option<SnappedPosition> {
+        snap(self.viewport.pixel_areas(vertex.position)).map(|position| position.map(|along| along as i32))
     }
 
     // ANCHOR: project_vertices
@@ -229,7 +222,7 @@ impl<'a> Projection<'a> {
             ClipTest::BeforeDivide => clip,
             ClipTest::AfterDivide => clip.map(|component| component / clip[3]),
         };
-        self.sides.iter().fold(i64x4::ZERO, |outside, Side { normal, offset, bit }| {
+        self.wide_planes.iter().fold(i64x4::ZERO, |outside, WidePlane { normal, offset, bit }| {
             let [x, y, z, w]: [f64x4; 4] = from_fn(|axis| normal[axis] * asked[axis]);
             let distance = x + y + z + w + *offset;
             outside | unless(distance.cmp_ge(f64x4::ZERO), *bit)
@@ -250,10 +243,10 @@ impl<'a> Projection<'a> {
 
         let is_finite = clip.map(|component| is_within(component, f64::MAX));
         let is_near = [is_within(ndc[0], GUARD_BAND), is_within(ndc[1], GUARD_BAND)];
-        let is_placed = pixels.map(|along| is_within(along, FARTHEST));
-        let answers = is_finite.into_iter().chain(is_near).chain(is_placed);
+        let is_snappable = pixels.map(|along| is_within(along, FARTHEST));
+        let answers = is_finite.into_iter().chain(is_near).chain(is_snappable);
         let is_ready = answers.fold(w.cmp_gt(f64x4::ZERO), |all, answer| all & answer);
-        let outside = self.outside(clip) | unless(is_ready, AMISS.into());
+        let outside = self.outside(clip) | unless(is_ready, NOT_REPRESENTABLE.into());
 
         let [x, y] = pixels.map(|along| whole(rounded(along * f64x4::splat(SUBPIXELS as f64))));
         let ndc = ndc.map(f64x4::to_array);
@@ -288,7 +281,7 @@ fn rounded(numbers: f64x4) -> f64x4 {
     (nearest + too_low).flip_signs(numbers)
 }
 
-/// Whole numbers of at most 31 bits and a sign, such as places are (25 bits), as integers.
+/// Whole numbers of at most 31 bits and a sign, such as positions are (25 bits), as integers.
 ///
 /// One addition, where `as` asks first whether the number fits.
 #[inline(always)]
@@ -318,7 +311,7 @@ mod tests {
 
         #[test]
         fn four_vertices_as_one_by_one(
-            positions in prop::array::uniform4(position()),
+            clip in prop::array::uniform4(position()),
             clip_test in prop::sample::select(vec![ClipTest::BeforeDivide, ClipTest::AfterDivide]),
             clip_volume in prop::sample::select(vec![ClipVolume::Canonical, ClipVolume::InFront(0.5), ClipVolume::Everything]),
             side in prop::sample::select(vec![640.0, 1.0, 1e5, 1e9]),
@@ -326,27 +319,27 @@ mod tests {
             let viewport = Some(Viewport { x: -3.5, y: 2.0, width: side, height: 480.0 });
             let state = RenderState { clip_test, clip_volume, viewport, ..RenderState::default() };
             let projection = Projection::new(&state, Rect::sized(640, 480));
-            let vertices = positions.map(|position| ClipVertex { position, varyings: [] });
-            let (places, outside, ndc) = projection.project(&vertices);
+            let vertices = clip.map(|position| ClipVertex { position, varyings: [] });
+            let (positions, outside, ndc) = projection.project(&vertices);
             for i in 0..AT_A_TIME {
                 let one = NdcVertex::<0>::from(vertices[i]);
-                let is_ready = positions[i].is_finite() && is_in_guard_band(&one);
-                let place = projection.place_of(&one).filter(|_| is_ready);
-                prop_assert_eq!(outside[i] & AMISS != 0, place.is_none());
-                if let Some(place) = place {
-                    prop_assert_eq!(places[i], place);
+                let is_ready = clip[i].is_finite() && is_in_guard_band(&one);
+                let position = projection.snapped_position(&one).filter(|_| is_ready);
+                prop_assert_eq!(outside[i] & NOT_REPRESENTABLE != 0, position.is_none());
+                if let Some(position) = position {
+                    prop_assert_eq!(positions[i], position);
                     prop_assert_eq!(ndc[i], one.position);
                 }
                 let asked = match clip_test {
-                    ClipTest::BeforeDivide => positions[i],
-                    ClipTest::AfterDivide => positions[i] / positions[i].w,
+                    ClipTest::BeforeDivide => clip[i],
+                    ClipTest::AfterDivide => clip[i] / clip[i].w,
                 };
                 let planes = projection.planes.iter().enumerate();
                 let expected = planes.fold(0, |bits, (number, plane)| {
                     let is_inside = plane.signed_distance(asked) >= 0.0;
                     bits | u8::from(!is_inside) << number
                 });
-                prop_assert_eq!(outside[i] & !AMISS, expected);
+                prop_assert_eq!(outside[i] & !NOT_REPRESENTABLE, expected);
             }
         }
     }

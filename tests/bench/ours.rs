@@ -2,20 +2,17 @@
 
 use arrayvec::ArrayVec;
 use glam::{DMat4, DVec4, Vec3};
-use rasterbook::Color;
-use rasterbook::clip::{ClipVertex, MAX_VERTICES, NdcVertex, clip_triangle, fan};
+use rasterbook::clip::{MAX_VERTICES, NdcVertex, clip_triangle, fan};
 use rasterbook::cull::CullMode;
-use rasterbook::depth::Target;
 use rasterbook::exact::Exact;
 use rasterbook::light::lambert;
-use rasterbook::mesh::Mesh;
-use rasterbook::pipeline::{LoadOp, RenderState, draw};
-use rasterbook::probe::Silent;
-use rasterbook::raster::{Rasterizer, Scanline};
-use rasterbook::real::{Mask, Real, Scalar};
-use rasterbook::shader::{Shaded, Shader};
+use rasterbook::raster::Rasterizer;
+use rasterbook::real::{Mask, Scalar};
 use rasterbook::texture::{AddressMode, Texture};
 use rasterbook::tiled::Tiled;
+use rasterbook::{
+    ClipVertex, Color, LoadOp, Mesh, Real, RenderState, Scanline, Shaded, Shader, Silent, Target, draw,
+};
 
 use crate::scenes::{AMBIENT, Scene, TEXTURE_SIDE, TO_LIGHT, Vertex, texels};
 
@@ -55,11 +52,36 @@ pub(crate) enum Coverage {
     Near,
 }
 
-const fn ours<Z: Rasterizer + Default + Send + 'static>(
-    name: &'static str,
-    threads: Threads,
-    coverage: Coverage,
-) -> Ours
+/// A rasterizer, and the way in which it draws a whole mesh.
+trait Contestant: Rasterizer + Default + Send + 'static {
+    fn draw_mesh<S: Shader<N>, const N: usize>(
+        &self,
+        mesh: &Mesh<S::Attributes>,
+        shader: &S,
+        state: &RenderState,
+        target: &mut Target<Self::Depth>,
+    ) {
+        draw(mesh, shader, state, self, target, &Silent);
+    }
+}
+
+impl Contestant for Scanline {}
+impl Contestant for Exact<f64> {}
+impl Contestant for Exact<f32> {}
+
+impl Contestant for Tiled {
+    fn draw_mesh<S: Shader<N>, const N: usize>(
+        &self,
+        mesh: &Mesh<S::Attributes>,
+        shader: &S,
+        state: &RenderState,
+        target: &mut Target<f32>,
+    ) {
+        Self::draw_mesh(self, mesh, shader, state, target);
+    }
+}
+
+const fn ours<Z: Contestant>(name: &'static str, threads: Threads, coverage: Coverage) -> Ours
 where
     Z::Depth: Send,
 {
@@ -170,7 +192,7 @@ struct Prepared<Z: Rasterizer, S, const N: usize> {
     target: Target<Z::Depth>,
 }
 
-impl<Z: Rasterizer + Default, S, const N: usize> Prepared<Z, S, N> {
+impl<Z: Contestant, S, const N: usize> Prepared<Z, S, N> {
     fn new(shader: S, scene: Scene) -> Self {
         let [width, height] = scene.size;
         let target = Target::sized(width, height);
@@ -178,7 +200,7 @@ impl<Z: Rasterizer + Default, S, const N: usize> Prepared<Z, S, N> {
     }
 }
 
-fn prepare<Z: Rasterizer + Default + Send + 'static>(scene: Scene) -> Box<dyn Frame + Send>
+fn prepare<Z: Contestant>(scene: Scene) -> Box<dyn Frame + Send>
 where
     Z::Depth: Send,
 {
@@ -189,12 +211,12 @@ where
     }
 }
 
-impl<Z: Rasterizer, S, const N: usize> Frame for Prepared<Z, S, N>
+impl<Z: Contestant, S, const N: usize> Frame for Prepared<Z, S, N>
 where
     S: Shader<N, Attributes = Vertex> + Sync,
 {
     fn draw(&mut self) {
-        draw(&self.mesh, &self.shader, &self.state, &self.rasterizer, &mut self.target, &Silent);
+        self.rasterizer.draw_mesh(&self.mesh, &self.shader, &self.state, &mut self.target);
     }
 
     fn picture(&mut self) -> Vec<[u8; 3]> {
@@ -241,7 +263,7 @@ struct Staged<Z: Rasterizer, S, const N: usize> {
     dot: Target<Z::Depth>,
 }
 
-impl<Z: Rasterizer, S: Shader<N, Attributes = Vertex> + Sync, const N: usize> Staged<Z, S, N> {
+impl<Z: Contestant, S: Shader<N, Attributes = Vertex> + Sync, const N: usize> Staged<Z, S, N> {
     fn new(prepared: Prepared<Z, S, N>) -> Self {
         let mut staged = Self { prepared, shaded: vec![], pieces: vec![], dot: Target::sized(1, 1) };
         staged.run(Stage::Vertex);
@@ -263,7 +285,7 @@ impl<Z: Rasterizer, S: Shader<N, Attributes = Vertex> + Sync, const N: usize> St
     }
 }
 
-fn stages<Z: Rasterizer + Default + Send + 'static>(scene: Scene) -> Box<dyn Stages + Send>
+fn stages<Z: Contestant>(scene: Scene) -> Box<dyn Stages + Send>
 where
     Z::Depth: Send,
 {
@@ -274,7 +296,7 @@ where
     }
 }
 
-impl<Z: Rasterizer, S: Shader<N, Attributes = Vertex> + Sync, const N: usize> Stages for Staged<Z, S, N> {
+impl<Z: Contestant, S: Shader<N, Attributes = Vertex> + Sync, const N: usize> Stages for Staged<Z, S, N> {
     fn run(&mut self, stage: Stage) {
         let Prepared { rasterizer, shader, mesh, state, target } = &mut self.prepared;
         let pieces = self.pieces.iter().copied();

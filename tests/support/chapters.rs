@@ -2,7 +2,7 @@
 
 #![allow(dead_code, reason = "each test uses a part of it, and the chapters' `main`s are not called")]
 
-use rasterbook::program::{Chapter, Variant};
+use rasterbook::figure::{Chapter, Variant};
 
 /// Lists the chapters: includes each file as a module, and pairs its table with its program.
 macro_rules! chapters {

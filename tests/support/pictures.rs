@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex};
 use image::RgbImage;
 use insta::internals::SnapshotContents;
 use insta::{Comparator, Settings, Snapshot};
-use rasterbook::program::picture;
+use rasterbook::figure::picture;
 use rasterbook::{Color, Framebuffer};
 
 /// How many differing pixels a report names.

@@ -1,6 +1,6 @@
 //! Comparing what two rasterizers have drawn, to the last bit.
 
-use rasterbook::depth::Target;
+use rasterbook::Target;
 
 /// Panics at the first pixel whose color or depth is not the same.
 pub(crate) fn assert_same(tiled: &Target<f32>, exact: &Target<f32>) {

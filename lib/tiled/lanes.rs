@@ -4,7 +4,7 @@
 //! operations in the same order as on one. So eight fragments are shaded in the time of one, to the same colors.
 //!
 //! ```
-//! use rasterbook::lanes::Lanes;
+//! use rasterbook::tiled::lanes::Lanes;
 //! use rasterbook::light::lambert;
 //! use rasterbook::real::Real;
 //!
@@ -19,8 +19,8 @@ use std::array::from_fn;
 use bytemuck::cast;
 use wide::{CmpEq, CmpGt, CmpLe, CmpLt, f32x8, i32x8};
 
-use crate::Color;
-use crate::real::{Mask, Real};
+use crate::color::Color;
+use crate::real::{Mask, Real, sealed};
 
 /// How many numbers.
 pub const LANES: usize = 8;
@@ -34,6 +34,8 @@ pub(crate) const ALL: i32 = 0xFF;
 /// Yes or no for each of eight numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct LaneMask(f32x8);
+
+impl sealed::Sealed for LaneMask {}
 
 impl Mask for LaneMask {
     #[inline]
@@ -56,8 +58,8 @@ impl LaneMask {
     /// The lanes whose bit is set, the first lane in the lowest bit.
     #[inline]
     pub(crate) fn of_bits(bits: i32) -> Self {
-        let place = i32x8::new([1, 2, 4, 8, 16, 32, 64, 128]);
-        Self(cast((i32x8::splat(bits) & place).cmp_eq(place)))
+        let bit = i32x8::new([1, 2, 4, 8, 16, 32, 64, 128]);
+        Self(cast((i32x8::splat(bits) & bit).cmp_eq(bit)))
     }
 
     /// `yes` in the lanes of the mask, `no` in the others.
@@ -84,6 +86,8 @@ pub(crate) fn is_less_or_equal(a: Lanes, b: Lanes) -> LaneMask {
 pub(crate) fn is_greater(a: Lanes, b: Lanes) -> LaneMask {
     LaneMask(a.cmp_gt(b))
 }
+
+impl sealed::Sealed for f32x8 {}
 
 impl Real for f32x8 {
     type Mask = LaneMask;
@@ -138,7 +142,17 @@ impl Real for f32x8 {
     }
 
     #[inline]
-    fn look_up<const C: usize>(
+    fn map_all<const N: usize, const M: usize>(
+        values: [Self; N],
+        function: impl Fn([f64; N]) -> [f64; M],
+    ) -> [Self; M] {
+        let values = values.map(Self::to_array);
+        let results: [[f64; M]; LANES] = from_fn(|lane| function(values.map(|value| f64::from(value[lane]))));
+        from_fn(|k| Self::new(from_fn(|lane| results[lane][k] as f32)))
+    }
+
+    #[inline]
+    fn gather<const C: usize>(
         column: Self,
         row: Self,
         table: impl Fn(usize, usize) -> [f64; C],
@@ -149,17 +163,17 @@ impl Real for f32x8 {
     }
 
     #[inline]
-    fn look_up_color(column: Self, row: Self, row_bits: u32, colors: &[Color]) -> i32x8 {
-        let places = (row.fast_trunc_int() << row_bits) + column.fast_trunc_int();
+    fn gather_color(column: Self, row: Self, row_bits: u32, colors: &[Color]) -> i32x8 {
+        let indices = (row.fast_trunc_int() << row_bits) + column.fast_trunc_int();
         // Two by two: half as many numbers leave the register, which keeps those parts of the processor busy that the
         // arithmetic needs.
-        let pairs: [u64; LANES / 2] = cast(places);
+        let pairs: [u64; LANES / 2] = cast(indices);
         let is_high = |lane: usize| (lane % 2 == 1) == cfg!(target_endian = "little");
-        let place = |lane: usize| {
+        let index = |lane: usize| {
             let pair = pairs[lane / 2];
             if is_high(lane) { pair >> 32 } else { pair & 0xFFFF_FFFF }
         };
-        i32x8::new(from_fn(|lane| colors[place(lane) as usize].bits() as i32))
+        i32x8::new(from_fn(|lane| colors[index(lane) as usize].bits() as i32))
     }
 
     #[inline]
@@ -181,7 +195,7 @@ pub(crate) fn packed(color: [Lanes; 3]) -> i32x8 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::framebuffer::Rounding;
+    use crate::merge::Rounding;
 
     const ODD: [f32; 8] = [-0.5, 0.0, 2.999_999, -3.0, 8_388_607.5, 1e30, -7.25, 254.5];
 
@@ -201,6 +215,9 @@ mod tests {
         check(Real::floor(b), |_, b| Real::floor(b));
         check(Real::select(a.is_less(b), a, b), |a, b| if a < b { a } else { b });
         check(Real::map(b, |v| v * 0.1), |_, b| Real::map(b, |v| v * 0.1));
+        let both = |[a, b]: [f64; 2]| [a - b, a * 0.1];
+        check(Real::map_all([a, b], both)[0], |a, b| Real::map_all([a, b], |[a, b]| [a - b])[0]);
+        check(Real::map_all([a, b], both)[1], |a, _| Real::map_all([a], |[a]| [a * 0.1])[0]);
     }
 
     #[test]
@@ -238,7 +255,7 @@ mod tests {
         let colors: Vec<Color> = (0..8).map(|i| Color::rgb(i * 10, i, 255 - i)).collect();
         let columns = Lanes::new([0.0, 1.0, 2.0, 0.0, 1.0, 2.0, 1.0, 0.0]);
         let rows = Lanes::new([0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 0.0, 1.0]);
-        let [red, ..] = Lanes::channels(Lanes::look_up_color(columns, rows, 2, &colors));
+        let [red, ..] = Lanes::channels(Lanes::gather_color(columns, rows, 2, &colors));
         assert_eq!(red.to_array(), [0.0, 10.0, 20.0, 40.0, 50.0, 60.0, 10.0, 40.0]);
     }
 }

@@ -1,5 +1,5 @@
 //! Beyond the book: the exact rasterizer. Which pixels a triangle covers is decided with whole numbers
-//! ([`edge`](crate::edge)).
+//! ([`edge`]).
 //!
 //! Takes triangles in NDC, as the scanline rasterizer does, and stands behind the same door.
 //!
@@ -30,22 +30,26 @@
 //! (top-left rule), 15.11.1 (facing); Vulkan specification, *Basic polygon rasterization* (values by weights); OpenGL
 //! 4.6, 14.6.1, asks only that one of two triangles sharing an edge covers a sample, which follows.
 
+pub mod edge;
+pub mod samples;
+
 use std::marker::PhantomData;
 
 use arrayvec::ArrayVec;
 use glam::dvec4;
 
-use crate::clip::{ClipTest, ClipVertex, NdcVertex, Plane, Polygon, clip_triangle, fan};
-use crate::depth::Target;
-use crate::edge::{Announced, Coverage, center};
-use crate::framebuffer::Rounding;
-use crate::merge::merge;
-use crate::pipeline::RenderState;
-use crate::probe::{FragmentEvent, Probe, Vertex};
+use crate::clip::{ClipTest, ClipVertex, NdcVertex, Plane, Polygon, RecordedVertex, clip_triangle, fan};
+use crate::fragment::FragmentStages;
+use crate::merge::Rounding;
+use crate::probe::{Piece, Probe};
 use crate::raster::Rasterizer;
 use crate::real::Scalar;
-use crate::shader::{Shaded, Shader};
+use crate::shader::Shader;
+use crate::state::RenderState;
+use crate::target::Target;
 use crate::varyings::TriangleVaryings;
+
+use edge::{Announced, Coverage, center};
 
 /// The exact rasterizer, computing in `R`: `f64` or `f32`. Coverage is the same in both.
 ///
@@ -97,10 +101,10 @@ pub(crate) fn is_in_guard_band<const N: usize>(vertex: &NdcVertex<N>) -> bool {
 /// The part of a triangle in the guard band: only for pipelines that do not clip to the view volume.
 pub(crate) fn cut_to_guard_band<const N: usize>(triangle: [NdcVertex<N>; 3]) -> ArrayVec<NdcVertex<N>, 9> {
     const PLANES: [Plane; 4] = [
-        Plane::through_eye(dvec4(1.0, 0.0, 0.0, GUARD_BAND)),
-        Plane::through_eye(dvec4(-1.0, 0.0, 0.0, GUARD_BAND)),
-        Plane::through_eye(dvec4(0.0, 1.0, 0.0, GUARD_BAND)),
-        Plane::through_eye(dvec4(0.0, -1.0, 0.0, GUARD_BAND)),
+        Plane::homogeneous(dvec4(1.0, 0.0, 0.0, GUARD_BAND)),
+        Plane::homogeneous(dvec4(-1.0, 0.0, 0.0, GUARD_BAND)),
+        Plane::homogeneous(dvec4(0.0, 1.0, 0.0, GUARD_BAND)),
+        Plane::homogeneous(dvec4(0.0, -1.0, 0.0, GUARD_BAND)),
     ];
     let clip = triangle.map(|vertex| ClipVertex {
         position: (vertex.position * vertex.w).extend(vertex.w),
@@ -119,51 +123,35 @@ fn draw_triangle<R: Scalar, S: Shader<N>, P: Probe + ?Sized, const N: usize>(
     target: &mut Target<R>,
     probe: &P,
 ) {
-    // Viewport: NDC → screen, and to 1/256 pixel.
-    let window = target.color.window();
-    let viewport = state.viewport_in(window.rect);
+    // 6. Viewport: NDC → screen, and to 1/256 pixel.
+    let scissor = target.color.scissor();
+    let viewport = state.viewport_in(scissor.rect);
     let coverage = Coverage::new(triangle.map(|vertex| viewport.pixel_areas(vertex.position)));
 
-    // Culling, by the signed area on the screen.
+    // 5. Culling, by the signed area on the screen.
     let signed_area = coverage.as_ref().map_or(0.0, Coverage::signed_area);
-    probe.piece(triangle.each_ref().map(Vertex::from), signed_area);
+    probe.piece(&|| Piece { vertices: triangle.each_ref().map(RecordedVertex::from), signed_area });
     let Some(coverage) = coverage.filter(|_| !state.cull.culls(signed_area, state.front_face)) else {
         probe.culled();
         return;
     };
 
-    // What the corners carry, made ready for weights, and how it changes from pixel to pixel.
+    // What the vertices carry, made ready for weights, and how it changes from pixel to pixel.
     let varyings = TriangleVaryings::<R, N>::new(triangle, state.interpolation);
     let step = varyings.change(coverage.weight_step());
     let gradients = coverage.weight_gradients();
 
-    let area = coverage.bounding_box(window.rect);
-    let _announced = Announced::new(window, &coverage);
+    // 7. Rasterization: which pixels, and which values. Each fragment goes through the stages 8 to 10.
+    let area = coverage.bounding_box(scissor.rect);
+    let _announced = Announced::new(scissor, &coverage);
+    let mut stages = FragmentStages { shader, state, rounding: Rounding::Nearest, target, probe };
     for y in area.rows() {
         let columns = coverage.covered_columns(area.columns(), y);
-        let start = varyings.even_at(coverage.weights(coverage.edge_values(center(columns.start, y))));
+        let start = varyings.linear_at(coverage.weights(coverage.edge_values(center(columns.start, y))));
         for (count, x) in columns.enumerate() {
-            // Interpolation.
-            let even = start.moved(&step, R::of(count as f64));
-            let point = even.multiplied(state.interpolation);
-            let depth = if state.depth_encoding.is_linear_on_screen() { even.depth } else { point.w };
-            // Fragment shading.
-            let shaded: Shaded<R> = if S::USES_DERIVATIVES {
-                shader.fragment_with_derivatives(point.values, varyings.derivatives(&point, gradients))
-            } else {
-                shader.fragment(point.values)
-            };
-            // Depth test, and blending.
-            let verdict = merge(target, state.merge, Rounding::Nearest, [x, y], depth, shaded);
-            probe.fragment(&FragmentEvent {
-                x,
-                y,
-                w: point.w.into(),
-                depth: depth.into(),
-                varyings: &point.values.map(Into::into),
-                color: shaded.color.channels().map(Into::into),
-                verdict,
-            });
+            let linear = start.moved(&step, R::of(count as f64));
+            let point = linear.multiplied(state.interpolation);
+            stages.draw((x, y), point, linear.depth, |point| varyings.derivatives(point, gradients));
         }
     }
 }

@@ -2,9 +2,10 @@
 
 use std::fmt::{self, Write as _};
 
-use crate::Color;
+use crate::color::Color;
+use crate::rect::Pixel;
 
-/// Something that is told: one source for both forms.
+/// Something that is reported: one source for both forms.
 #[derive(Clone, Debug)]
 pub(super) enum Value {
     Number(f64),
@@ -18,7 +19,7 @@ pub(super) enum Value {
         columns: Vec<String>,
         rows: Vec<(String, Vec<Option<f64>>)>,
     },
-    /// Told to programs alone: for people it stands in a table.
+    /// For programs alone: for people it stands in a table.
     Group(Vec<Field>),
     Groups(Vec<Vec<Field>>),
     List(Vec<String>),
@@ -32,7 +33,7 @@ pub(super) struct Field {
     pub(super) value: Value,
 }
 
-/// A field that both are told.
+/// A field for both.
 pub(super) const fn field(key: &'static str, label: &'static str, value: Value) -> Field {
     Field { key, label, value }
 }
@@ -65,7 +66,7 @@ pub struct History {
     pub(super) variant: &'static str,
     pub(super) frame: Option<u32>,
     /// The pixel, y up.
-    pub(super) pixel: (i32, i32),
+    pub(super) pixel: Pixel,
     /// Its row in the image file, 0 on top.
     pub(super) row: i32,
     pub(super) entries: Vec<Entry>,
@@ -74,7 +75,7 @@ pub struct History {
     /// The color that stands in the picture.
     pub(super) color: Color,
     /// The color that the last of the entries has left.
-    pub(super) told: Color,
+    pub(super) last_color: Color,
 }
 
 /// A number, rounded for people: about five digits that count.
@@ -199,11 +200,17 @@ impl History {
         self.color
     }
 
-    /// The color that the last of what is told has left. It is that of the picture, unless the program has shown another
+    /// The color that the last of the events has left. It is that of the picture, unless the program has shown another
     /// buffer afterwards, or drawn a line between enlarged pixels.
     #[must_use]
-    pub const fn told(&self) -> Color {
-        self.told
+    pub const fn last_color(&self) -> Color {
+        self.last_color
+    }
+
+    /// The same without what did not reach the pixel.
+    #[must_use]
+    pub fn without_misses(self) -> Self {
+        Self { others: Vec::new(), ..self }
     }
 
     /// The history as JSON: one object. Numbers have full precision; what is not finite is `null`.
@@ -237,11 +244,11 @@ fn entry_json(entry: &Entry) -> String {
         hidden("kind", Value::Text(entry.kind.to_owned())),
         hidden("title", Value::Text(entry.title.clone())),
     ];
-    let told =
+    let named =
         |fields: &[Field]| fields.iter().filter(|field| !field.key.is_empty()).cloned().collect::<Vec<_>>();
-    fields.extend(told(&entry.fields));
+    fields.extend(named(&entry.fields));
     if !entry.hits.is_empty() {
-        fields.push(hidden("hits", Value::Groups(entry.hits.iter().map(|hit| told(hit)).collect())));
+        fields.push(hidden("hits", Value::Groups(entry.hits.iter().map(|hit| named(hit)).collect())));
     }
     value_json(&Value::Group(fields))
 }
@@ -270,7 +277,7 @@ fn value_json(value: &Value) -> String {
             };
             let row = |(name, cells): &(String, Vec<Option<f64>>)| {
                 let cells: Vec<String> = columns.iter().zip(cells).filter_map(cell).collect();
-                // Which row was used is told by a field of its own.
+                // Which row was used is said by a field of its own.
                 format!("{}: {{{}}}", text_json(name.trim_end_matches(USED)), cells.join(", "))
             };
             format!("{{{}}}", rows.iter().map(row).collect::<Vec<_>>().join(", "))

@@ -2,14 +2,16 @@
 
 use glam::{DMat3, DVec2, DVec3};
 
-use super::chapter::Animation;
-use super::picture::block;
-use super::record::{ClipTriangle, Event, Pixel, Point, Primitive};
-use crate::clip::clip_polygon;
-use crate::edge::SUBPIXELS;
+use super::record::{Event, Primitive, Recording};
+use crate::clip::{Assembled, ClipVertex, clip_polygon};
+use crate::color::Color;
+use crate::exact::edge::SUBPIXELS;
+use crate::figure::picture::block;
+use crate::figure::{Animation, DrawOptions, Variant};
+use crate::framebuffer::Framebuffer;
 use crate::line::{StepAxis, dda};
+use crate::rect::{Pixel, Rect};
 use crate::transform::perspective_divide;
-use crate::{Color, Framebuffer, Rect};
 
 /// At most so many frames.
 const MOST: usize = 240;
@@ -17,7 +19,7 @@ const MOST: usize = 240;
 const FEW: usize = 64;
 
 /// One write: where it shows in the picture, its color, and to which row and which primitive it belongs.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Write {
     rect: Rect,
     color: Color,
@@ -28,13 +30,15 @@ struct Write {
 }
 
 /// The outline of a polygon, shown after so many writes.
+#[derive(Debug)]
 struct Outline {
     after: usize,
     lines: Vec<[DVec2; 2]>,
 }
 
-/// Everything that was written, in order.
-pub(super) struct Steps {
+/// How a picture comes about: everything that was written, in order.
+#[derive(Debug)]
+pub struct Steps {
     size: (u32, u32),
     writes: Vec<Write>,
     outlines: Vec<Outline>,
@@ -46,17 +50,24 @@ pub(super) struct Steps {
 /// The corners of a piece on the screen, if the primitive is a triangle.
 fn corners_of(primitive: &Primitive) -> Option<[DVec2; 3]> {
     match primitive {
-        Primitive::Triangle(triangle) => Some(triangle.corners),
+        Primitive::Triangle(triangle) => Some(triangle.positions),
         Primitive::Coverage(coverage) => {
             Some(coverage.vertices.map(|[x, y]| DVec2::new(x as f64, y as f64) / SUBPIXELS as f64))
         }
-        Primitive::Line { .. } | Primitive::Half { .. } => None,
+        Primitive::Line(_) | Primitive::Half(_) => None,
     }
 }
 
 impl Steps {
+    /// Draws a variant and records it.
+    #[must_use]
+    pub fn new(variant: &Variant, options: &DrawOptions<'_>) -> Self {
+        let Recording { events, picture, .. } = Recording::new(variant, options, None);
+        Self::of(&events, picture)
+    }
+
     /// Reads the events of a picture.
-    pub(super) fn new(events: &[Event], picture: Framebuffer) -> Self {
+    fn of(events: &[Event], picture: Framebuffer) -> Self {
         let mut steps = Self {
             size: (picture.width(), picture.height()),
             writes: Vec::new(),
@@ -66,7 +77,7 @@ impl Steps {
         };
         let (mut factor, mut primitive, mut row) = (1, 0, 0);
         let mut last: Option<Pixel> = None;
-        let mut clipped: Option<&ClipTriangle> = None;
+        let mut clipped: Option<&Assembled> = None;
         for event in events {
             match event {
                 Event::Enlarged(times) => factor = *times,
@@ -103,8 +114,8 @@ impl Steps {
     }
 
     /// The polygon after each plane that cut something off.
-    fn outline(&mut self, triangle: &ClipTriangle, corners: [DVec2; 3]) {
-        let mut polygon: Vec<_> = triangle.vertices.iter().map(Point::bare).collect();
+    fn outline(&mut self, triangle: &Assembled, corners: [DVec2; 3]) {
+        let mut polygon: Vec<ClipVertex<0>> = triangle.vertices.iter().map(ClipVertex::from).collect();
         let mut stages = vec![polygon.clone()];
         for plane in &triangle.planes {
             let cut = clip_polygon::<0, 16>(&polygon, plane, triangle.test).to_vec();
@@ -165,14 +176,16 @@ impl Steps {
     }
 
     /// How long the animation is, and how fast: one that can be followed.
-    pub(super) fn animation(&self) -> Animation {
+    #[must_use]
+    pub fn animation(&self) -> Animation {
         // The finished picture stays for a second.
         let rate = if self.frames.len() > 60 { 20 } else { 6 };
         Animation { frames: self.frames.len() as u32 + rate, rate }
     }
 
     /// A frame; the last ones are the finished picture.
-    pub(super) fn frame(&self, number: u32) -> Framebuffer {
+    #[must_use]
+    pub fn frame(&self, number: u32) -> Framebuffer {
         let Some(&(end, outline)) = self.frames.get(number as usize) else { return self.last.clone() };
         let mut picture = Framebuffer::new(self.size.0, self.size.1);
         for write in &self.writes[..end] {
@@ -185,7 +198,8 @@ impl Steps {
     }
 
     /// How often each pixel was written, as colors, and what the colors mean: a line each.
-    pub(super) fn overdraw(&self) -> (Framebuffer, Vec<String>) {
+    #[must_use]
+    pub fn overdraw(&self) -> (Framebuffer, Vec<String>) {
         let mut counts = vec![0_usize; self.size.0 as usize * self.size.1 as usize];
         let all = self.last.rect();
         for write in self.writes.iter().filter(|write| !write.is_clear) {

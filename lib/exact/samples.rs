@@ -5,7 +5,7 @@
 //!
 //! ```
 //! use rasterbook::Color;
-//! use rasterbook::antialias::{GRID_2X2, Samples};
+//! use rasterbook::exact::samples::{GRID_2X2, Samples};
 //!
 //! let mut samples = Samples::new(1, 1, &GRID_2X2);
 //! samples.draw(0, 0, 1, 0.5, Color::WHITE); // one of four samples, at the depth 0.5
@@ -14,10 +14,12 @@
 
 use std::array::from_fn;
 
-use crate::edge::{SUBPIXELS, Subpixel};
-use crate::framebuffer::Rounding;
-use crate::probe::Listener;
-use crate::{Color, Framebuffer, Rect};
+use super::edge::{SUBPIXELS, Subpixel};
+use crate::color::Color;
+use crate::framebuffer::Framebuffer;
+use crate::merge::Rounding;
+use crate::observer::SharedObserver;
+use crate::rect::Rect;
 
 /// Where the samples of a pixel are: in 1/256 pixel from its lower left corner.
 pub type Pattern = [Subpixel];
@@ -61,7 +63,7 @@ pub struct Samples<'a> {
     rect: Rect,
     colors: Vec<Color>,
     depths: Vec<f64>,
-    listener: Option<Listener>,
+    observer: Option<SharedObserver>,
 }
 
 impl<'a> Samples<'a> {
@@ -74,14 +76,14 @@ impl<'a> Samples<'a> {
             rect: Rect::sized(width, height),
             colors: vec![Color::BLACK; count],
             depths: vec![f64::INFINITY; count],
-            listener: None,
+            observer: None,
         }
     }
 
-    /// The same, with somebody who listens.
+    /// The same, with an observer, or none.
     #[must_use]
-    pub fn heard_by(self, listener: Option<Listener>) -> Self {
-        Self { listener, ..self }
+    pub fn with_observer(self, observer: Option<SharedObserver>) -> Self {
+        Self { observer, ..self }
     }
 
     /// The pixels.
@@ -102,9 +104,9 @@ impl<'a> Samples<'a> {
         let Some(pixel) = self.rect.index(x, y) else { return };
         let index = pixel * self.pattern.len() + sample;
         let stored = self.depths[index];
-        if let Some(listener) = &self.listener {
+        if let Some(observer) = &self.observer {
             let passes = if depth <= stored { "drawn" } else { "hidden" };
-            listener.note(x, y, &|| {
+            observer.note((x, y), &|| {
                 format!("sample {sample}: {depth:.4} against {stored:.4}, {color:?} {passes}")
             });
         }

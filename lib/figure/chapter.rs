@@ -1,10 +1,11 @@
 //! A chapter's table: its variants, each one picture.
 
-use std::process::ExitCode;
-
-use super::{Canvas, Failure, RasterizerChoice, Subject, run};
-use crate::Framebuffer;
-use crate::probe::Listener;
+use super::canvas::{Canvas, RasterizerChoice};
+use super::subject::Subject;
+use crate::files::FileError;
+use crate::framebuffer::Framebuffer;
+use crate::observer::SharedObserver;
+use crate::probe::SharedProbe;
 
 /// A chapter: the question it asks, and the pictures that answer it.
 #[derive(Debug)]
@@ -18,12 +19,6 @@ pub struct Chapter {
 }
 
 impl Chapter {
-    /// The whole program: reads the arguments, draws, writes, reports.
-    #[must_use]
-    pub fn main(&self) -> ExitCode {
-        run::main(self)
-    }
-
     /// The variant that is drawn when none is named.
     ///
     /// # Panics
@@ -51,7 +46,7 @@ pub struct Variant {
     pub source: &'static str,
     /// Width and height in pixels, unless `--size` says otherwise.
     pub size: (u32, u32),
-    /// For a deliberate mistake: that it is one, and which variant mends it.
+    /// For a deliberate mistake: that it is one, and which variant is its remedy.
     pub mistake: Mistake,
     /// How long and how fast it is, if it is an animation.
     pub animation: Option<Animation>,
@@ -62,7 +57,7 @@ pub struct Variant {
 
 /// How a variant is to be drawn.
 #[derive(Clone, Debug)]
-pub struct Sitting<'a> {
+pub struct DrawOptions<'a> {
     /// Width and height in pixels.
     pub size: (u32, u32),
     /// The frame of an animation; 0 for one picture.
@@ -71,8 +66,22 @@ pub struct Sitting<'a> {
     pub rasterizer: RasterizerChoice,
     /// What it is a picture of, where it draws a model.
     pub subject: Option<&'a Subject>,
-    /// Who listens, if anybody does.
-    pub listener: Option<Listener>,
+    /// Who observes, if anybody does.
+    pub observer: Option<SharedProbe>,
+}
+
+impl DrawOptions<'_> {
+    /// What is drawn into: black, and observed.
+    fn framebuffer(&self) -> Framebuffer {
+        let mut framebuffer = Framebuffer::new(self.size.0, self.size.1);
+        framebuffer.set_observer(self.observer.clone().map(|observer| observer as SharedObserver));
+        framebuffer
+    }
+
+    /// What is drawn on with the pipeline, for a scene that is made for a picture of the proportions of `native`.
+    fn canvas(&self, native: (u32, u32)) -> Canvas {
+        Canvas::new(&self.framebuffer(), native, self.frame, self.rasterizer, self.observer.clone())
+    }
 }
 
 /// What draws a picture.
@@ -110,9 +119,9 @@ pub enum Mistake {
     /// It is right.
     No,
     /// It is wrong, and this variant of the same chapter is its remedy.
-    MendedBy(&'static str),
+    RemediedBy(&'static str),
     /// It is wrong, and the chapter has no remedy for it.
-    Unmended,
+    WithoutRemedy,
 }
 
 impl Variant {
@@ -191,16 +200,16 @@ impl Variant {
         Self { source, ..self }
     }
 
-    /// The same, but a mistake that another variant mends.
+    /// The same, but a mistake whose remedy is another variant.
     #[must_use]
-    pub const fn mended_by(self, remedy: &'static str) -> Self {
-        Self { mistake: Mistake::MendedBy(remedy), ..self }
+    pub const fn remedied_by(self, remedy: &'static str) -> Self {
+        Self { mistake: Mistake::RemediedBy(remedy), ..self }
     }
 
     /// The same, but a mistake without a remedy in its chapter.
     #[must_use]
-    pub const fn unmended(self) -> Self {
-        Self { mistake: Mistake::Unmended, ..self }
+    pub const fn without_remedy(self) -> Self {
+        Self { mistake: Mistake::WithoutRemedy, ..self }
     }
 
     /// Whether `--texture` means anything to it.
@@ -219,7 +228,7 @@ impl Variant {
     ///
     /// # Errors
     /// If the table names files that are not in `assets/`.
-    pub fn subject(&self) -> Result<Option<Subject>, Failure> {
+    pub fn subject(&self) -> Result<Option<Subject>, FileError> {
         match self.figure {
             Figure::Plain(_) | Figure::Canvas(_) => Ok(None),
             Figure::PlainModel(_, Assets { model, texture })
@@ -229,9 +238,9 @@ impl Variant {
 
     /// How it is drawn when nothing else is said: its own size and rasterizer, the first frame.
     #[must_use]
-    pub fn sitting<'a>(&self, subject: Option<&'a Subject>) -> Sitting<'a> {
+    pub fn options<'a>(&self, subject: Option<&'a Subject>) -> DrawOptions<'a> {
         let rasterizer = self.rasterizer.unwrap_or_default();
-        Sitting { size: self.size, frame: 0, rasterizer, subject, listener: None }
+        DrawOptions { size: self.size, frame: 0, rasterizer, subject, observer: None }
     }
 
     /// Draws the picture; without a subject, a variant that draws one stays black.
@@ -239,15 +248,29 @@ impl Variant {
     /// # Panics
     /// As [`Framebuffer::new`] does.
     #[must_use]
-    pub fn draw(&self, sitting: &Sitting<'_>) -> Framebuffer {
-        let mut canvas = Canvas::new(sitting, self.size);
-        match (self.figure, sitting.subject) {
-            (Figure::Plain(draw), _) => draw(&mut canvas.target.color),
-            (Figure::PlainModel(draw, _), Some(subject)) => draw(&mut canvas.target.color, subject),
-            (Figure::Canvas(draw), _) => draw(&mut canvas),
-            (Figure::Model(draw, _), Some(subject)) => draw(&mut canvas, subject),
-            (Figure::PlainModel(..) | Figure::Model(..), None) => {}
+    pub fn draw(&self, options: &DrawOptions<'_>) -> Framebuffer {
+        match (self.figure, options.subject) {
+            (Figure::Plain(draw), _) => {
+                let mut framebuffer = options.framebuffer();
+                draw(&mut framebuffer);
+                framebuffer
+            }
+            (Figure::PlainModel(draw, _), Some(subject)) => {
+                let mut framebuffer = options.framebuffer();
+                draw(&mut framebuffer, subject);
+                framebuffer
+            }
+            (Figure::Canvas(draw), _) => {
+                let mut canvas = options.canvas(self.size);
+                draw(&mut canvas);
+                canvas.into_picture()
+            }
+            (Figure::Model(draw, _), Some(subject)) => {
+                let mut canvas = options.canvas(self.size);
+                draw(&mut canvas, subject);
+                canvas.into_picture()
+            }
+            (Figure::PlainModel(..) | Figure::Model(..), None) => options.framebuffer(),
         }
-        canvas.into_picture()
     }
 }

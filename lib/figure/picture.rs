@@ -1,6 +1,8 @@
 //! Pictures made of pictures: enlarged, side by side, and where two of them differ.
 
-use crate::{Color, Framebuffer, Rect};
+use crate::color::Color;
+use crate::framebuffer::Framebuffer;
+use crate::rect::{Pixel, Rect};
 
 /// How a picture is enlarged so that its pixels can be seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -8,7 +10,7 @@ pub struct Zoom {
     /// Each pixel becomes a block of factor × factor pixels.
     pub factor: u32,
     /// The pixel around which to cut, framebuffer coordinates; the middle of the picture if there is none.
-    pub center: Option<(i32, i32)>,
+    pub center: Option<Pixel>,
 }
 
 impl Zoom {
@@ -52,7 +54,7 @@ pub fn zoomed(picture: &Framebuffer, zoom: Zoom) -> Framebuffer {
 }
 
 /// The block that shows a pixel of an enlarged screen; from a certain size on a line is left free beside it.
-pub(super) const fn block((x, y): (i32, i32), factor: u32) -> Rect {
+pub(crate) const fn block((x, y): Pixel, factor: u32) -> Rect {
     let line = if factor >= Zoom::GRID_FROM { 1 } else { 0 };
     let factor = factor as i32;
     Rect {
@@ -88,15 +90,15 @@ pub fn draw_enlarged(
     draw: impl FnOnce(&mut Framebuffer),
 ) {
     let mut screen = Framebuffer::new(width, height);
-    let listener = into.listener();
-    screen.listen(listener.clone());
-    screen.tell(|probe| probe.enlarged(factor));
+    let observer = into.observer();
+    screen.set_observer(observer.clone());
+    screen.report(|observer| observer.enlarged(factor));
     draw(&mut screen);
-    screen.tell(|probe| probe.enlarged(1));
-    // The blocks are no news to whoever listens.
-    into.listen(None);
+    screen.report(|observer| observer.enlarged(1));
+    // The blocks are no news to an observer.
+    into.set_observer(None);
     paste(into, &enlarged(&screen, factor), 0, 0);
-    into.listen(listener);
+    into.set_observer(observer);
 }
 
 /// Copies a picture into another one, its lower left corner to (left, bottom); what does not fit is left out.

@@ -7,13 +7,16 @@ use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
 
 use glam::dvec3;
+use image::ImageFormat;
 
-use super::output::png_bytes;
 use super::picture::enlarged;
+use crate::color::Color;
 use crate::files::{FileError, decode_texture};
+use crate::framebuffer::Framebuffer;
 use crate::model::{Model, NormalStyle};
+use crate::rect::Rect;
+use crate::save::encode;
 use crate::texture::Texture;
-use crate::{Color, Framebuffer, Rect};
 
 /// Names one file of `assets/` and carries its bytes.
 macro_rules! asset {
@@ -58,7 +61,7 @@ pub fn texture(name: &str) -> Result<Texture, FileError> {
 /// All files of `assets/` but its page: names and contents.
 #[must_use]
 pub fn generate() -> Vec<(&'static str, Vec<u8>)> {
-    let picture = |framebuffer: Framebuffer| png_bytes(&framebuffer).unwrap_or_default();
+    let picture = |framebuffer: Framebuffer| encode(&framebuffer, ImageFormat::Png).unwrap_or_default();
     vec![
         ("cube.obj", cube().into_bytes()),
         ("sphere.obj", sphere().into_bytes()),

@@ -1,16 +1,17 @@
-//! The numbers of corners, clipping, edge functions, weights and fragments, as the history of a pixel tells them. Those
+//! The numbers of vertices, clipping, edge functions, weights and fragments, as the history of a pixel has them. Those
 //! of lines and rows are in `rows.rs`.
 
 use super::history::{Field, Value, field, table, value_names};
-use super::record::{ClipTriangle, Fragment, Pixel, Point};
 use crate::area::Winding;
-use crate::clip::{ClipTest, ClipVertex, Plane, clip_polygon};
-use crate::edge::{Coverage, SUBPIXELS, center};
+use crate::clip::{Assembled, Clip, ClipVertex, NdcVertex, Plane, clip_polygon, for_each_clip};
+use crate::exact::edge::{Coverage, SUBPIXELS, center};
 use crate::interpolate::Interpolation;
 use crate::merge::Verdict;
+use crate::probe::{Fragment, Piece};
+use crate::rect::Pixel;
 use crate::varyings::TriangleVaryings;
 
-/// Twice the signed area, and what it says; the label names the space in which it was reckoned.
+/// Twice the signed area, and what it says; the label names the space in which it was computed.
 pub(super) fn facing(area: f64, label: &'static str) -> Vec<Field> {
     let winding = match Winding::of(area) {
         Some(Winding::CounterClockwise) => "counter-clockwise",
@@ -23,8 +24,8 @@ pub(super) fn facing(area: f64, label: &'static str) -> Vec<Field> {
     ]
 }
 
-/// The corners before clipping: in the model, and in clip space.
-pub(super) fn vertex_fields(triangle: &ClipTriangle) -> Vec<Field> {
+/// The vertices before clipping: in the model, and in clip space.
+pub(super) fn vertex_fields(triangle: &Assembled) -> Vec<Field> {
     let mut fields = Vec::new();
     if let Some(model) = triangle.model {
         let rows = "ABC".chars().zip(model);
@@ -55,60 +56,45 @@ fn plane_name(plane: &Plane) -> String {
 }
 
 /// How each plane changed the triangle: which vertices it cut off, and where the cuts are. New vertices are D, E, …
-pub(super) fn clip_fields(triangle: &ClipTriangle) -> (Option<Field>, Vec<char>) {
+pub(super) fn clip_fields(triangle: &Assembled) -> (Option<Field>, Vec<char>) {
     let mut names: Vec<char> = "ABC".chars().collect();
-    let mut polygon: Vec<ClipVertex<0>> = triangle.vertices.iter().map(Point::bare).collect();
-    let mut next = 'D';
+    let mut new_names = 'D'..;
+    let mut polygon: Vec<ClipVertex<0>> = triangle.vertices.iter().map(ClipVertex::from).collect();
     let mut lines = Vec::new();
     for plane in &triangle.planes {
-        let distance = |vertex: &ClipVertex<0>| match triangle.test {
-            ClipTest::BeforeDivide => plane.signed_distance(vertex.position),
-            ClipTest::AfterDivide => plane.signed_distance(vertex.position / vertex.position.w),
-        };
-        let distances: Vec<f64> = polygon.iter().map(distance).collect();
-        if distances.iter().all(|&distance| distance >= 0.0) {
-            continue;
-        }
         let mut kept = Vec::new();
-        let mut line = plane_name(plane) + ":";
-        for (i, &from) in distances.iter().enumerate() {
-            let end = (i + 1) % distances.len();
-            if from >= 0.0 {
-                kept.push(names[i]);
-            } else {
-                line += &format!(" {} outside;", names[i]);
+        let mut parts = Vec::new();
+        for_each_clip(&polygon, plane, triangle.test, |clip| match clip {
+            Clip::Inside(vertex) => kept.push(names[vertex]),
+            Clip::Outside(vertex) => parts.push(format!(" {} outside", names[vertex])),
+            Clip::Cut { outer, inner, t } => {
+                let new = new_names.next().unwrap_or('?');
+                parts.push(format!(" {new} on {}{} at t = {t:.4}", names[outer], names[inner]));
+                kept.push(new);
             }
-            if (from >= 0.0) != (distances[end] >= 0.0) {
-                // From the outer end to the inner one, as the clipper reckons.
-                let (outer, inner) = if from >= 0.0 { (end, i) } else { (i, end) };
-                let t = distances[outer] / (distances[outer] - distances[inner]);
-                line += &format!(" {next} on {}{} at t = {t:.4};", names[outer], names[inner]);
-                kept.push(next);
-                next = char::from_u32(next as u32 + 1).unwrap_or('?');
-            }
+        });
+        if !parts.is_empty() {
+            lines.push(format!("{}:{}", plane_name(plane), parts.join(";")));
+            polygon = clip_polygon::<0, 16>(&polygon, plane, triangle.test).to_vec();
+            names = kept;
         }
-        lines.push(line.trim_end_matches(';').to_owned());
-        polygon = clip_polygon::<0, 16>(&polygon, plane, triangle.test).to_vec();
-        names = kept;
     }
     if lines.is_empty() {
         return (None, names);
     }
-    lines.push(format!(
-        "left: {}",
-        if names.is_empty() { "nothing".to_owned() } else { names.iter().collect() }
-    ));
+    let left = if names.is_empty() { "nothing".to_owned() } else { names.iter().collect() };
+    lines.push(format!("left: {left}"));
     (Some(field("clipping", "clipped", Value::List(lines))), names)
 }
 
 /// The three edge functions at a pixel's center, and what the weights make of the vertices.
-pub(super) fn edge_fields(coverage: &Coverage, piece: Option<&[Point; 3]>, (x, y): Pixel) -> Vec<Field> {
+pub(super) fn edge_fields(coverage: &Coverage, piece: Option<&Piece>, (x, y): Pixel) -> Vec<Field> {
     let unit = (SUBPIXELS * SUBPIXELS) as f64;
     let values = coverage.edge_values(center(x, y));
     let weights = values.map(|value| value as f64 / coverage.twice_area as f64);
-    let corners = coverage.vertices.map(|vertex| vertex.map(|c| c as f64 / SUBPIXELS as f64));
+    let vertices = coverage.vertices.map(|vertex| vertex.map(|c| c as f64 / SUBPIXELS as f64));
     let rows = (0..3).map(|i| {
-        let numbers = [corners[i][0], corners[i][1], values[i] as f64 / unit, weights[i]];
+        let numbers = [vertices[i][0], vertices[i][1], values[i] as f64 / unit, weights[i]];
         (["A", "B", "C"][i].to_owned(), numbers.map(Some).to_vec())
     });
     let mut fields =
@@ -126,22 +112,22 @@ pub(super) fn edge_fields(coverage: &Coverage, piece: Option<&[Point; 3]>, (x, y
 }
 
 /// ω, and the values interpolated in both ways.
-fn weighted_fields(piece: &[Point; 3], weights: [f64; 2]) -> Vec<Field> {
-    let count = piece[0].values.len();
+fn weighted_fields(Piece { vertices, .. }: &Piece, weights: [f64; 2]) -> Vec<Field> {
+    let count = vertices[0].varyings.len();
     let one = |k: usize, interpolation| {
-        let corner = |i: usize| crate::clip::NdcVertex {
-            position: piece[i].position.truncate(),
-            w: piece[i].position.w,
-            varyings: [piece[i].values.get(k).copied().unwrap_or_default()],
-        };
-        TriangleVaryings::<f64, 1>::new(&[corner(0), corner(1), corner(2)], interpolation).at(weights)
+        let triangle = vertices.each_ref().map(|vertex| NdcVertex {
+            position: vertex.position.truncate(),
+            w: vertex.position.w,
+            varyings: [vertex.varyings.get(k).copied().unwrap_or_default()],
+        });
+        TriangleVaryings::<f64, 1>::new(&triangle, interpolation).at(weights)
     };
     let all = |interpolation| (0..count).map(|k| Some(one(k, interpolation).values[0])).collect::<Vec<_>>();
     let w = |interpolation| Some(one(0, interpolation).w);
     let mut rows: Vec<(String, Vec<Option<f64>>)> = Vec::new();
-    for (name, point) in ["A", "B", "C"].into_iter().zip(piece) {
-        let values = point.values.iter().map(|value| Some(*value));
-        rows.push((name.to_owned(), std::iter::once(Some(point.position.w)).chain(values).collect()));
+    for (name, vertex) in ["A", "B", "C"].into_iter().zip(vertices) {
+        let values = vertex.varyings.iter().map(|value| Some(*value));
+        rows.push((name.to_owned(), std::iter::once(Some(vertex.position.w)).chain(values).collect()));
     }
     for (name, interpolation) in
         [("affine", Interpolation::Affine), ("V_p", Interpolation::PerspectiveCorrect)]
@@ -165,8 +151,8 @@ pub(super) fn fragment_fields(fragment: &Fragment) -> Vec<Field> {
         field("w", "ω", Value::Number(fragment.w)),
         field(
             "varyings",
-            if fragment.values.is_empty() { "" } else { "varyings" },
-            Value::Numbers(fragment.values.clone()),
+            if fragment.varyings.is_empty() { "" } else { "varyings" },
+            Value::Numbers(fragment.varyings.clone()),
         ),
         field("fragment_depth", "", Value::Number(fragment.depth)),
         field("shaded", "shader's color", Value::Numbers(vec![red, green, blue])),

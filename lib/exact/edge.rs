@@ -3,7 +3,7 @@
 //!
 //! Takes triangles on the screen; gives the pixels that they cover, and how much each corner weighs there. A pixel is a
 //! square with its sample in the middle; three *edge functions* say on which side of each edge the sample lies. The
-//! [exact rasterizer](crate::exact) and the fast one stand on it.
+//! [exact rasterizer](super) and the fast one stand on it.
 //!
 //! Sources: Direct3D 11.3 functional specification, 3.3 (pixel centers), 3.4.1 (snapping), 3.4.2.1 (top-left rule); J.
 //! Pineda, A parallel algorithm for polygon rasterization, 1988.
@@ -11,14 +11,14 @@
 //! ```
 //! use glam::dvec2;
 //! use rasterbook::Rect;
-//! use rasterbook::edge::Coverage;
+//! use rasterbook::exact::edge::Coverage;
 //!
 //! // Two triangles that share a diagonal through pixel centers: each center belongs to one of them.
 //! let [a, b, c, d] = [dvec2(0.0, 0.0), dvec2(4.0, 0.0), dvec2(4.0, 4.0), dvec2(0.0, 4.0)];
 //! let lower = Coverage::new([a, b, c]).ok_or("no area")?;
 //! let upper = Coverage::new([a, c, d]).ok_or("no area")?;
-//! let window = Rect::sized(4, 4);
-//! assert_eq!(lower.pixels(window).count() + upper.pixels(window).count(), 16);
+//! let picture = Rect::sized(4, 4);
+//! assert_eq!(lower.pixels(picture).count() + upper.pixels(picture).count(), 16);
 //! # Ok::<(), &str>(())
 //! ```
 
@@ -27,10 +27,10 @@ use std::ops::Range;
 
 use glam::{DVec2, dvec2};
 
-use crate::Rect;
 use crate::area::Winding;
-use crate::probe::Window;
 use crate::real::{Real, Scalar};
+use crate::rect::Rect;
+use crate::scissor::Scissor;
 use crate::varyings::{WeightGradients, weight_gradients};
 
 /// The parts of a pixel into which positions are rounded, along x and along y.
@@ -69,7 +69,7 @@ pub fn snap(position: DVec2) -> Option<Subpixel> {
 ///           a
 /// ```
 ///
-/// In units of 1/256 × 1/256 pixel. Positive on the left of the edge. From point to point it changes evenly, so that
+/// In units of 1/256 × 1/256 pixel. Positive on the left of the edge. From point to point it changes linearly, so that
 /// the next pixel costs one addition. Source: J. Pineda, A parallel algorithm for polygon rasterization, 1988.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EdgeFunction {
@@ -241,10 +241,10 @@ impl Coverage {
         gradients_between(self.vertices)
     }
 
-    /// The pixels of the window whose centers lie in the bounding box of the triangle.
+    /// The pixels of a rectangle whose centers lie in the bounding box of the triangle.
     #[must_use]
     #[inline]
-    pub fn bounding_box(&self, window: Rect) -> Rect {
+    pub fn bounding_box(&self, rect: Rect) -> Rect {
         let [xs, ys] = [0, 1].map(|axis| self.vertices.map(|vertex| vertex[axis]));
         // The first center that is not below the lowest, and the one after the last that is not above the highest.
         let first = |values: [i64; 3]| {
@@ -255,24 +255,37 @@ impl Coverage {
             let highest = values[0].max(values[1]).max(values[2]);
             (highest - SUBPIXELS / 2).div_euclid(SUBPIXELS) as i32 + 1
         };
-        Rect {
-            left: first(xs).max(window.left),
-            bottom: first(ys).max(window.bottom),
-            right: end(xs).min(window.right),
-            top: end(ys).min(window.top),
-        }
+        Rect { left: first(xs), bottom: first(ys), right: end(xs), top: end(ys) }.intersection(rect)
     }
 
-    /// The pixels of the window whose centers are covered, row by row from the bottom, with the values of the edge
+    /// The pixels of the scissor whose centers are covered, row by row from the bottom, with the values of the edge
     /// functions there.
-    pub fn pixels<W: Into<Window>>(&self, window: W) -> impl Iterator<Item = (i32, i32, [i64; 3])> + use<W> {
-        let window = window.into();
-        let area = self.bounding_box(window.rect);
-        let announced = Announced::new(window, self);
+    pub fn pixels<W: Into<Scissor>>(
+        &self,
+        scissor: W,
+    ) -> impl Iterator<Item = (i32, i32, [i64; 3])> + use<W> {
+        let scissor = scissor.into();
+        let area = self.bounding_box(scissor.rect);
+        let announced = Announced::new(scissor, self);
         area.rows().flat_map(move |y| {
             // All of it, so that it lives as long as the rows do.
             let announced = &announced;
             announced.coverage.row(area.columns(), y).map(move |(x, values)| (x, y, values))
+        })
+    }
+
+    /// All pixels of the scissor, covered or not, row by row from the bottom, with the values of the edge functions at
+    /// their centers.
+    pub fn all_pixels<W: Into<Scissor>>(
+        &self,
+        scissor: W,
+    ) -> impl Iterator<Item = (i32, i32, [i64; 3])> + use<W> {
+        let scissor = scissor.into();
+        let area = scissor.rect;
+        let announced = Announced::new(scissor, self);
+        area.rows().flat_map(move |y| {
+            let coverage = announced.coverage;
+            area.columns().map(move |x| (x, y, coverage.edge_values(center(x, y))))
         })
     }
 
@@ -300,23 +313,90 @@ impl Coverage {
 }
 // ANCHOR_END: coverage
 
-/// Tells a window's listener of a triangle, and that it is done as soon as this goes out of scope.
+/// Reports a triangle to the observer of a scissor, and that it is done as soon as this goes out of scope.
 pub(crate) struct Announced {
-    window: Window,
+    scissor: Scissor,
     coverage: Coverage,
 }
 
 impl Announced {
     #[inline]
-    pub(crate) fn new(window: Window, coverage: &Coverage) -> Self {
-        let announced = Self { window, coverage: *coverage };
-        announced.window.tell(|probe| probe.coverage(&announced.coverage));
+    pub(crate) fn new(scissor: Scissor, coverage: &Coverage) -> Self {
+        let announced = Self { scissor, coverage: *coverage };
+        announced.scissor.report(|observer| observer.begun(&announced.coverage));
         announced
     }
 }
 
 impl Drop for Announced {
     fn drop(&mut self) {
-        self.window.tell(|probe| probe.done());
+        self.scissor.report(|observer| observer.done());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scanline::tests::grid;
+
+    /// How often each pixel of 10 × 6 is covered by some triangles; a `2` would be overdraw.
+    fn drawn(triangles: &[[(f64, f64); 3]]) -> String {
+        let mut counts = [[0; 10]; 6];
+        for triangle in triangles {
+            let coverage = Coverage::new(triangle.map(DVec2::from)).expect("a triangle with area");
+            for (x, y, _) in coverage.pixels(Rect::sized(10, 6)) {
+                counts[y as usize][x as usize] += 1;
+            }
+        }
+        grid(&counts)
+    }
+
+    /// The corners of a square whose sides run through the centers of pixels.
+    const A: (f64, f64) = (1.5, 0.5);
+    const B: (f64, f64) = (6.5, 0.5);
+    const C: (f64, f64) = (6.5, 5.5);
+    const D: (f64, f64) = (1.5, 5.5);
+
+    #[test]
+    fn centers_on_left_edges_are_covered_and_those_on_right_and_bottom_edges_are_not() {
+        let expected = "\
+            ..........\n\
+            .1........\n\
+            .11.......\n\
+            .111......\n\
+            .1111.....\n\
+            ..........\n";
+        assert_eq!(drawn(&[[A, B, D]]), expected);
+        assert_eq!(drawn(&[[A, D, B]]), expected, "whichever way it winds");
+    }
+
+    #[test]
+    fn centers_on_top_edges_are_covered() {
+        let expected = "\
+            .11111....\n\
+            .1111.....\n\
+            .111......\n\
+            .11.......\n\
+            .1........\n\
+            ..........\n";
+        assert_eq!(drawn(&[[A, C, D]]), expected);
+    }
+
+    #[test]
+    fn two_triangles_share_a_diagonal_through_centers_without_a_gap_or_overdraw() {
+        let expected = "\
+            .11111....\n\
+            .11111....\n\
+            .11111....\n\
+            .11111....\n\
+            .11111....\n\
+            ..........\n";
+        assert_eq!(drawn(&[[A, B, C], [A, C, D]]), expected);
+        assert_eq!(drawn(&[[B, C, D], [A, B, D]]), expected, "the other diagonal");
+    }
+
+    #[test]
+    fn between_the_centers_nothing_is_covered() {
+        assert_eq!(drawn(&[[(0.6, 1.6), (9.4, 1.7), (5.0, 2.4)]]), ("..........\n").repeat(6));
     }
 }

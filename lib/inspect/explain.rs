@@ -1,17 +1,19 @@
-//! The history of a pixel: what was recorded, told with the numbers of each chapter's formula.
+//! The history of a pixel: what was recorded, with the numbers of each chapter's formula.
 //!
 //! Nothing here draws. Of a primitive that reached the pixel, the stage is gone through once more with the same library
 //! functions, to find the numbers that it passed on the way.
 
-use std::sync::Arc;
-
-use super::chapter::{Sitting, Variant};
 use super::formulas::{clip_fields, edge_fields, facing, fragment_fields, vertex_fields};
 use super::history::{Entry, Field, History, Value, field, table};
-use super::record::{ClipTriangle, Event, Pixel, Point, Primitive, Recorder, within};
-use super::rows::{line_at, rows_at};
+use super::record::{Event, Primitive, Recording, within};
+use super::rows::{line_at, miss, rows_at};
 use crate::area::twice_signed_area;
-use crate::{Color, Framebuffer, Rect};
+use crate::clip::Assembled;
+use crate::color::Color;
+use crate::figure::{DrawOptions, Variant};
+use crate::framebuffer::Framebuffer;
+use crate::probe::Piece;
+use crate::rect::{Pixel, Rect};
 
 /// An area on the screen.
 const PIXELS: &str = "area · 2, px²";
@@ -27,13 +29,8 @@ struct Findings {
 
 /// The history of a pixel of a variant's picture.
 #[must_use]
-pub fn history(
-    program: &'static str,
-    variant: &Variant,
-    sitting: &Sitting<'_>,
-    pixel: (i32, i32),
-) -> History {
-    let Heard { events, picture, frame } = listen(variant, sitting, Some(pixel));
+pub fn history(program: &'static str, variant: &Variant, options: &DrawOptions<'_>, pixel: Pixel) -> History {
+    let Recording { events, picture, frame } = Recording::new(variant, options, Some(pixel));
     History { program, variant: variant.name, frame, ..History::of(&events, &picture, pixel) }
 }
 
@@ -41,55 +38,40 @@ pub fn history(
 pub fn histories(
     program: &'static str,
     variant: &Variant,
-    sitting: &Sitting<'_>,
-    pixels: impl IntoIterator<Item = (i32, i32)>,
+    options: &DrawOptions<'_>,
+    pixels: impl IntoIterator<Item = Pixel>,
 ) -> Vec<History> {
-    let Heard { events, picture, frame } = listen(variant, sitting, None);
+    let Recording { events, picture, frame } = Recording::new(variant, options, None);
     let history =
         |pixel| History { program, variant: variant.name, frame, ..History::of(&events, &picture, pixel) };
     pixels.into_iter().map(history).collect()
 }
 
-/// A picture, and what was heard while it was drawn.
-struct Heard {
-    events: Vec<Event>,
-    picture: Framebuffer,
-    frame: Option<u32>,
-}
-
-/// Draws a variant and listens: to everything, or of what happens to pixels only to what concerns one.
-fn listen(variant: &Variant, sitting: &Sitting<'_>, watched: Option<Pixel>) -> Heard {
-    let recorder = Arc::new(Recorder::new(watched));
-    let picture = variant.draw(&Sitting { listener: Some(recorder.clone()), ..sitting.clone() });
-    let frame = variant.animation.map(|_| sitting.frame);
-    Heard { events: recorder.events(), picture, frame }
-}
-
 impl History {
-    /// What happened at a pixel on the way to a picture, from what was heard.
+    /// What happened at a pixel on the way to a picture, from what was recorded.
     pub(super) fn of(events: &[Event], picture: &Framebuffer, pixel: Pixel) -> Self {
-        let Findings { mut entries, others, color: told } = explain(events, pixel, picture.rect());
+        let Findings { mut entries, others, color: last_color } = explain(events, pixel, picture.rect());
         let color = picture.get(pixel.0, pixel.1).unwrap_or_default();
         if !entries.iter().any(|entry| matches!(entry.kind, "line" | "half" | "triangle" | "painted")) {
             let title = "Nothing covers this pixel: it keeps the background".to_owned();
             entries.push(Entry::new("background", title));
         }
-        if color != told {
+        if color != last_color {
             let title = format!(
                 "Afterwards the program shows something else here, {color:?}: another buffer, or a line between enlarged pixels"
             );
             entries.push(Entry::new("replaced", title));
         }
         let row = picture.height() as i32 - 1 - pixel.1;
-        Self { program: "", variant: "", frame: None, pixel, row, entries, others, color, told }
+        Self { program: "", variant: "", frame: None, pixel, row, entries, others, color, last_color }
     }
 }
 
-/// Tells what happened at a pixel of a picture of this size.
+/// Explains what happened at a pixel of a picture of this size.
 fn explain(events: &[Event], pixel: Pixel, picture: Rect) -> Findings {
-    let mut teller = Teller {
+    let mut explainer = Explainer {
         pixel,
-        window: picture,
+        picture,
         factor: 1,
         number: 0,
         assembled: None,
@@ -105,12 +87,12 @@ fn explain(events: &[Event], pixel: Pixel, picture: Rect) -> Findings {
         found: Findings::default(),
     };
     for event in events {
-        teller.hear(event);
+        explainer.read(event);
     }
-    teller.end_triangle();
-    let left_out: Vec<Entry> = teller.left_out().collect();
-    teller.found.others.extend(left_out);
-    teller.found
+    explainer.end_triangle();
+    let left_out: Vec<Entry> = explainer.left_out().collect();
+    explainer.found.others.extend(left_out);
+    explainer.found
 }
 
 /// Numbers in rising order as text: 1–3, 7, 9–12.
@@ -124,14 +106,14 @@ fn ranges(numbers: &[usize]) -> String {
 }
 
 /// Where we are in the events.
-struct Teller<'a> {
+struct Explainer<'a> {
     pixel: Pixel,
-    window: Rect,
+    picture: Rect,
     factor: u32,
     /// Of triangles and lines, counted from 1.
     number: usize,
-    assembled: Option<&'a ClipTriangle>,
-    piece: Option<(&'a [Point; 3], f64)>,
+    assembled: Option<&'a Assembled>,
+    piece: Option<&'a Piece>,
     pieces: usize,
     primitive: Option<&'a Primitive>,
     /// Whether the primitive has reached the pixel, and has an entry.
@@ -146,8 +128,8 @@ struct Teller<'a> {
     found: Findings,
 }
 
-impl<'a> Teller<'a> {
-    fn hear(&mut self, event: &'a Event) {
+impl<'a> Explainer<'a> {
+    fn read(&mut self, event: &'a Event) {
         match event {
             Event::Enlarged(factor) => self.enlarge(*factor),
             Event::Cleared(color) => self.clear(*color),
@@ -156,9 +138,13 @@ impl<'a> Teller<'a> {
                 self.number += 1;
                 (self.assembled, self.piece, self.pieces) = (Some(triangle), None, 0);
             }
-            Event::Piece(vertices, area) => {
+            Event::Piece(piece) => {
                 self.pieces += 1;
-                self.piece = Some((vertices, *area));
+                self.piece = Some(piece);
+            }
+            Event::Unknown => {
+                let title = "A stage begins that is not known here".to_owned();
+                self.found.entries.push(Entry::new("unknown", title));
             }
             // Of a clipped triangle there may be several pieces.
             Event::Culled if self.culled.last() == Some(&self.number) => {}
@@ -233,7 +219,7 @@ impl<'a> Teller<'a> {
     }
 
     fn screen(&self) -> Rect {
-        let [width, height] = [self.window.right, self.window.top].map(|side| side as u32 / self.factor);
+        let [width, height] = [self.picture.right, self.picture.top].map(|side| side as u32 / self.factor);
         Rect::sized(width, height)
     }
 
@@ -277,8 +263,8 @@ impl<'a> Teller<'a> {
         let (here, screen) = (self.here(), self.screen());
         let fields = match self.primitive {
             None => Vec::new(),
-            Some(Primitive::Line { a, b, axis }) => line_at(*a, *b, *axis, here, screen),
-            Some(Primitive::Coverage(coverage)) => edge_fields(coverage, self.piece.map(|(p, _)| p), here),
+            Some(Primitive::Line(line)) => line_at(line, here, screen),
+            Some(Primitive::Coverage(coverage)) => edge_fields(coverage, self.piece, here),
             Some(primitive) => rows_at(primitive, here, screen).into_iter().nth(hit).unwrap_or_default(),
         };
         self.add(fields);
@@ -292,8 +278,8 @@ impl<'a> Teller<'a> {
         };
         let number = self.number;
         let (kind, title) = match primitive {
-            Primitive::Line { .. } => ("line", format!("Line {number}")),
-            Primitive::Half { .. } => ("half", format!("Half {number} of a triangle")),
+            Primitive::Line(_) => ("line", format!("Line {number}")),
+            Primitive::Half(_) => ("half", format!("Half {number} of a triangle")),
             Primitive::Triangle(_) | Primitive::Coverage(_) => ("triangle", format!("Triangle {number}")),
         };
         let mut fields = vec![field("number", "", Value::Whole(number as i64))];
@@ -309,14 +295,14 @@ impl<'a> Teller<'a> {
                 fields.extend([clipping, field("", "piece", Value::Text(text))]);
             }
         }
-        if let Some((vertices, area)) = self.piece {
+        if let Some(Piece { vertices, signed_area }) = self.piece {
             let rows = "ABC".chars().zip(vertices.iter());
             let rows = rows.map(|(name, v)| (name.to_string(), v.position.to_array().map(Some).to_vec()));
             fields.push(field("ndc", "NDC, and ω", table(&["x", "y", "z", "ω"], rows.collect())));
             let is_on_screen = matches!(primitive, Primitive::Coverage(_));
-            fields.extend(facing(area, if is_on_screen { PIXELS } else { "area · 2, NDC" }));
+            fields.extend(facing(*signed_area, if is_on_screen { PIXELS } else { "area · 2, NDC" }));
         } else if let Primitive::Triangle(triangle) = primitive {
-            let [a, b, c] = triangle.corners;
+            let [a, b, c] = triangle.positions;
             fields.extend(facing(twice_signed_area(a, b, c), PIXELS));
         }
         Entry { fields, ..Entry::new(kind, title) }
@@ -347,9 +333,9 @@ impl<'a> Teller<'a> {
 
     fn done(&mut self) {
         if let Some(primitive) = self.primitive.take_if(|_| !self.is_open)
-            && let Some(reason) = super::rows::miss(primitive, within(self.pixel, self.factor), self.screen())
+            && let Some(reason) = miss(primitive, within(self.pixel, self.factor), self.screen())
         {
-            let name = if matches!(primitive, Primitive::Line { .. }) { "line" } else { "triangle" };
+            let name = if matches!(primitive, Primitive::Line(_)) { "line" } else { "triangle" };
             let piece = if self.pieces > 1 { format!(", piece {}", self.pieces) } else { String::new() };
             let title = format!("{name} {}{piece}: {reason}", self.number);
             self.found.others.push(Entry::new("missed", title));

@@ -1,23 +1,23 @@
-//! What corners carry, as records of 1/ω, depth and V/ω: eight numbers of one place at a time, where
-//! [`Lanes`] are one number of eight places.
+//! What vertices carry, packed: 1/ω, depth and V/ω side by side, eight numbers of one point at a time, where
+//! [`Lanes`] are one number of eight points.
 
 use std::array::from_fn;
 use std::hint::black_box;
 
 use wide::f32x8;
 
+use super::lanes::{LANES, Lanes};
 use super::vertices::Triangle;
-use crate::lanes::{LANES, Lanes};
-use crate::varyings::EvenVaryings;
+use crate::varyings::LinearVaryings;
 
-/// A record of 2 + N numbers: the first block, and as many more as it takes. (What is too much is never read.)
+/// 2 + N numbers: the first block, and as many more as it takes. (What is too much is never read.)
 #[derive(Clone, Copy)]
-pub(super) struct Record<const N: usize> {
+pub(super) struct PackedVaryings<const N: usize> {
     pub(super) first: f32x8,
     pub(super) more: [f32x8; N],
 }
 
-impl<const N: usize> Record<N> {
+impl<const N: usize> PackedVaryings<N> {
     #[inline(always)]
     fn of(blocks: &[f32x8]) -> Self {
         let is_used = |i: usize| i * LANES < 2 + N;
@@ -29,10 +29,10 @@ impl<const N: usize> Record<N> {
     /// By way of memory: taking a number out of a register, for all lanes, would keep those parts of the processor busy that
     /// the arithmetic needs. It changes nothing but the time.
     #[inline(always)]
-    pub(super) fn spread(self) -> EvenVaryings<Lanes, N> {
+    pub(super) fn spread(self) -> LinearVaryings<Lanes, N> {
         let Self { first, more } = self;
         let first = black_box(first.as_array_ref());
-        even(|k| {
+        linear(|k| {
             Lanes::splat(if k < LANES { first[k] } else { more[k / LANES - 1].as_array_ref()[k % LANES] })
         })
     }
@@ -46,40 +46,40 @@ impl<const N: usize> Record<N> {
     }
 }
 
-/// The records of a triangle's corners, made ready for weights, with the same sums in the same order as in
+/// What the vertices of a triangle carry, packed and made ready for weights, with the same sums in the same order as in
 /// [`TriangleVaryings`](crate::varyings::TriangleVaryings).
-pub(super) struct Ways<const N: usize> {
-    first: Record<N>,
-    to_second: Record<N>,
-    to_third: Record<N>,
+pub(super) struct PackedTriangleVaryings<const N: usize> {
+    first: PackedVaryings<N>,
+    to_second: PackedVaryings<N>,
+    to_third: PackedVaryings<N>,
 }
 
-impl<const N: usize> Ways<N> {
+impl<const N: usize> PackedTriangleVaryings<N> {
     #[inline(always)]
     pub(super) fn of(triangle: Triangle<'_>) -> Self {
-        let [first, second, third] = triangle.records.map(Record::of);
-        let way = |corner: Record<N>| corner.with(&first, |corner, first| corner - first);
-        Self { first, to_second: way(second), to_third: way(third) }
+        let [first, second, third] = triangle.packed.map(PackedVaryings::of);
+        let difference = |corner: PackedVaryings<N>| corner.with(&first, |corner, first| corner - first);
+        Self { first, to_second: difference(second), to_third: difference(third) }
     }
 
     /// Where the second and the third corner have these weights.
     #[inline(always)]
-    pub(super) fn at(&self, [second, third]: [f32; 2]) -> Record<N> {
+    pub(super) fn at(&self, [second, third]: [f32; 2]) -> PackedVaryings<N> {
         let [second, third] = [second, third].map(f32x8::splat);
-        let on_the_way = self.first.with(&self.to_second, |first, way| first + way * second);
-        on_the_way.with(&self.to_third, |there, way| there + way * third)
+        let on_the_way = self.first.with(&self.to_second, |first, difference| first + difference * second);
+        on_the_way.with(&self.to_third, |there, difference| there + difference * third)
     }
 
     /// How much changes where their weights change by so much.
     #[inline(always)]
-    pub(super) fn change(&self, [second, third]: [f32; 2]) -> Record<N> {
+    pub(super) fn change(&self, [second, third]: [f32; 2]) -> PackedVaryings<N> {
         let [second, third] = [second, third].map(f32x8::splat);
         self.to_second.with(&self.to_third, |to_second, to_third| to_second * second + to_third * third)
     }
 }
 
-/// What stands in a record, by its meaning.
+/// Packed numbers by their meaning.
 #[inline(always)]
-pub(super) fn even<const N: usize>(number: impl Fn(usize) -> Lanes) -> EvenVaryings<Lanes, N> {
-    EvenVaryings { distance: number(0), depth: number(1), values: from_fn(|k| number(k + 2)) }
+pub(super) fn linear<const N: usize>(number: impl Fn(usize) -> Lanes) -> LinearVaryings<Lanes, N> {
+    LinearVaryings { distance: number(0), depth: number(1), values: from_fn(|k| number(k + 2)) }
 }

@@ -1,0 +1,174 @@
+//! What the figures of the later chapters draw on: a target, and the pipeline laid into the middle of it.
+
+use crate::exact::Exact;
+use crate::framebuffer::Framebuffer;
+use crate::mesh::Mesh;
+use crate::pipeline::draw;
+use crate::probe::{Probe, SharedProbe, Silent};
+use crate::raster::Scanline;
+use crate::shader::Shader;
+use crate::state::{LoadOp, RenderState};
+use crate::target::Target;
+#[cfg(feature = "tiled")]
+use crate::tiled::Tiled;
+use crate::transform::Viewport;
+
+/// Which rasterizer the pipeline ends with.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum RasterizerChoice {
+    /// The book's, [`Scanline`].
+    #[default]
+    Scanline,
+    /// The exact one in double precision, [`Exact`].
+    Edge,
+    /// The fast one, [`Tiled`]; while somebody observes, [`Exact`] in single precision, which draws the same.
+    #[cfg(feature = "tiled")]
+    Tiled,
+}
+
+impl RasterizerChoice {
+    /// All of them.
+    pub const ALL: &[Self] = &[
+        Self::Scanline,
+        Self::Edge,
+        #[cfg(feature = "tiled")]
+        Self::Tiled,
+    ];
+
+    /// How it is called on the command line.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Scanline => "scanline",
+            Self::Edge => "edge",
+            #[cfg(feature = "tiled")]
+            Self::Tiled => "tiled",
+        }
+    }
+}
+
+/// A rasterizer, and a target of the precision in which it computes.
+#[derive(Debug)]
+enum Drawing {
+    Scanline(Target),
+    Exact(Target),
+    #[cfg(feature = "tiled")]
+    Tiled(Target<f32>, Tiled),
+}
+
+/// A picture in the making.
+#[derive(Debug)]
+pub struct Canvas {
+    /// The number of the frame, 0 if the picture is no animation.
+    pub frame: u32,
+    /// It comes uncleared.
+    drawing: Drawing,
+    /// Who observes the pipeline; the target carries the same observer.
+    observer: Option<SharedProbe>,
+    aspect: f64,
+}
+
+impl Canvas {
+    /// A canvas like an empty framebuffer, for a scene that is made for a picture of the proportions of `native`.
+    pub(super) fn new(
+        framebuffer: &Framebuffer,
+        native: (u32, u32),
+        frame: u32,
+        rasterizer: RasterizerChoice,
+        observer: Option<SharedProbe>,
+    ) -> Self {
+        let aspect = f64::from(native.0) / f64::from(native.1);
+        let drawing = match rasterizer {
+            RasterizerChoice::Scanline => Drawing::Scanline(Target::like(framebuffer)),
+            RasterizerChoice::Edge => Drawing::Exact(Target::like(framebuffer)),
+            #[cfg(feature = "tiled")]
+            RasterizerChoice::Tiled => Drawing::Tiled(Target::like(framebuffer), Tiled::new()),
+        };
+        Self { frame, drawing, observer, aspect }
+    }
+
+    pub(super) fn into_picture(self) -> Framebuffer {
+        match self.drawing {
+            Drawing::Scanline(target) | Drawing::Exact(target) => target.color,
+            #[cfg(feature = "tiled")]
+            Drawing::Tiled(target, _) => target.color,
+        }
+    }
+
+    /// The picture so far.
+    #[must_use]
+    pub const fn picture(&self) -> &Framebuffer {
+        match &self.drawing {
+            Drawing::Scanline(target) | Drawing::Exact(target) => &target.color,
+            #[cfg(feature = "tiled")]
+            Drawing::Tiled(target, _) => &target.color,
+        }
+    }
+
+    /// The picture so far, to be drawn into.
+    pub const fn picture_mut(&mut self) -> &mut Framebuffer {
+        match &mut self.drawing {
+            Drawing::Scanline(target) | Drawing::Exact(target) => &mut target.color,
+            #[cfg(feature = "tiled")]
+            Drawing::Tiled(target, _) => &mut target.color,
+        }
+    }
+
+    /// Where the scene is: as large as it fits, its proportions kept.
+    #[must_use]
+    pub fn viewport(&self) -> Viewport {
+        Viewport::fitting(self.picture().rect(), self.aspect)
+    }
+
+    /// One of `count` panels side by side, counted from the left.
+    #[must_use]
+    pub fn panel(&self, index: u32, count: u32) -> Viewport {
+        let whole = self.viewport();
+        let width = whole.width / f64::from(count);
+        Viewport { x: whole.x + width * f64::from(index), width, ..whole }
+    }
+
+    /// Gives all pixels the color and the depth that the state names.
+    pub fn clear(&mut self, state: &RenderState) {
+        match &mut self.drawing {
+            Drawing::Scanline(target) | Drawing::Exact(target) => state.clear(target),
+            #[cfg(feature = "tiled")]
+            Drawing::Tiled(target, _) => state.clear(target),
+        }
+    }
+
+    // ANCHOR: draw
+    /// Draws a mesh with the pipeline, into the viewport of the state or else into that of the canvas.
+    pub fn draw<S: Shader<N>, const N: usize>(
+        &mut self,
+        mesh: &Mesh<S::Attributes>,
+        shader: &S,
+        state: &RenderState,
+    ) {
+        let viewport = Some(state.viewport.unwrap_or_else(|| self.viewport()));
+        let state = &RenderState { viewport, ..*state };
+        // One type for both, so that the pipeline is compiled once for each shader, not twice.
+        let probe: &dyn Probe = self.observer.as_deref().map_or(&Silent, |observer| observer);
+        match &mut self.drawing {
+            Drawing::Scanline(target) => draw(mesh, shader, state, &Scanline, target, probe),
+            Drawing::Exact(target) => draw(mesh, shader, state, &Exact::<f64>::new(), target, probe),
+            #[cfg(feature = "tiled")]
+            Drawing::Tiled(target, tiled) if self.observer.is_none() => {
+                tiled.draw_mesh(mesh, shader, state, target);
+            }
+            #[cfg(feature = "tiled")]
+            Drawing::Tiled(target, _) => draw(mesh, shader, state, &Exact::<f32>::new(), target, probe),
+        }
+    }
+    // ANCHOR_END: draw
+
+    /// Clears, then draws a mesh.
+    pub fn render<S: Shader<N>, const N: usize>(
+        &mut self,
+        mesh: &Mesh<S::Attributes>,
+        shader: &S,
+        state: &RenderState,
+    ) {
+        self.draw(mesh, shader, &RenderState { load: LoadOp::Clear, ..*state });
+    }
+}

@@ -1,0 +1,196 @@
+//! Chapter 3: values that change by equal steps, up the two sides of a triangle and along its rows.
+//!
+//! Chapter 2 walks up a half and finds the span of each row. Here a *payload* goes along: values in chapter 3, the
+//! parameter t in chapter 5, t and a depth in chapter 7. Takes a payload at the ends of what is walked; gives it at each
+//! row and at each pixel.
+//!
+//! ```
+//! use glam::dvec2;
+//! use rasterbook::Rect;
+//! use rasterbook::payload::Payload;
+//! use rasterbook::scanline::{StepLimit, Walk, spans};
+//!
+//! // Along a row of five pixels from 0 to 1.
+//! let triangle = [dvec2(0.0, 0.0), dvec2(4.0, 0.0), dvec2(0.0, 1.0)];
+//! let mut values = Vec::new();
+//! spans(triangle, Walk::default(), Rect::sized(8, 8), |span| {
+//!     span.step(0.0, 1.0, StepLimit::Edges, |_, value| values.push(value));
+//! });
+//! assert_eq!(values, [0.0, 0.25, 0.5, 0.75, 1.0]);
+//! ```
+
+use crate::rect::Rect;
+use crate::scanline::{Edge, Half, Span, Split, StepLimit, Walk, halves};
+
+/// Something that changes by equal steps from one end of an edge, or of a row, to the other.
+pub trait Payload: Copy {
+    /// The step for one pixel, from `start` to `end` over `length` pixels: (end − start) / length.
+    #[must_use]
+    fn slope(start: Self, end: Self, length: f64) -> Self;
+    /// This value after `count` steps.
+    #[must_use]
+    fn stepped(self, slope: Self, count: f64) -> Self;
+    /// This value, but not beyond `end` as seen from `start`; `limit` is not [`StepLimit::Overrun`].
+    #[must_use]
+    fn clamped(self, start: Self, end: Self, limit: StepLimit) -> Self;
+}
+
+/// One number: a value, or the parameter t of chapter 5.
+impl Payload for f64 {
+    #[inline]
+    fn slope(start: Self, end: Self, length: f64) -> Self {
+        (end - start) / length
+    }
+
+    #[inline]
+    fn stepped(self, slope: Self, count: f64) -> Self {
+        self + slope * count
+    }
+
+    #[inline]
+    fn clamped(self, start: Self, end: Self, _: StepLimit) -> Self {
+        if end > start {
+            self.min(end)
+        } else if end < start {
+            self.max(end)
+        } else {
+            self
+        }
+    }
+}
+
+/// Several values, each by itself.
+impl<P: Payload, const N: usize> Payload for [P; N] {
+    #[inline]
+    fn slope(start: Self, end: Self, length: f64) -> Self {
+        std::array::from_fn(|i| P::slope(start[i], end[i], length))
+    }
+
+    #[inline]
+    fn stepped(self, slope: Self, count: f64) -> Self {
+        std::array::from_fn(|i| self[i].stepped(slope[i], count))
+    }
+
+    #[inline]
+    fn clamped(self, start: Self, end: Self, limit: StepLimit) -> Self {
+        std::array::from_fn(|i| self[i].clamped(start[i], end[i], limit))
+    }
+}
+
+impl Split {
+    /// What is at the ends of the halves' edges, the lower half first: what the three vertices carry, and at the new point
+    /// P′ what `between` makes of two vertices and the parameter t.
+    #[must_use]
+    #[inline]
+    pub fn attach<T: Copy>(&self, carried: [T; 3], between: impl Fn(T, T, f64) -> T) -> [Half<T>; 2] {
+        let [p1, p2, p3] = self.order.map(|i| carried[i]);
+        let p = between(p1, p3, self.t);
+        let (left, right) = if self.is_middle_right { (p, p2) } else { (p2, p) };
+        halves(p1, left, right, p3)
+    }
+}
+
+impl Half {
+    // ANCHOR: step
+    /// Walks up both sides of the half with a payload, and emits each span with the payload at its start and at its end.
+    ///
+    /// `carried` is the payload at the ends of the half's edges. Source: book, section 3.2.4.
+    #[inline]
+    pub fn step<P: Payload>(
+        &self,
+        carried: &Half<P>,
+        walk: Walk,
+        scissor: Rect,
+        mut emit: impl FnMut(Span, [P; 2]),
+    ) {
+        let mut left = Stepped::new(&self.left, &carried.left);
+        let mut right = Stepped::new(&self.right, &carried.right);
+        self.walk(walk.edges, scissor, |span| {
+            left.step_to(span.y, walk.limit);
+            right.step_to(span.y, walk.limit);
+            emit(span, [left.value, right.value]);
+        });
+    }
+    // ANCHOR_END: step
+}
+
+/// A payload on its way up one side of a half.
+struct Stepped<P> {
+    /// The row that it has reached.
+    y: f64,
+    value: P,
+    slope: P,
+    ends: Edge<P>,
+}
+
+impl<P: Payload> Stepped<P> {
+    #[inline]
+    fn new(edge: &Edge, ends: &Edge<P>) -> Self {
+        let slope = P::slope(ends.end, ends.start, edge.rise());
+        Self { y: edge.start.y.trunc(), value: ends.start, slope, ends: *ends }
+    }
+
+    /// Goes up to a row, and does not pass the end of the edge if that is the limit.
+    #[inline]
+    fn step_to(&mut self, y: i32, limit: StepLimit) {
+        let rows = f64::from(y) - self.y;
+        if rows > 0.0 {
+            self.y = f64::from(y);
+            self.value = self.value.stepped(self.slope, rows);
+            if limit != StepLimit::Overrun {
+                self.value = self.value.clamped(self.ends.start, self.ends.end, limit);
+            }
+        }
+    }
+}
+
+impl Span {
+    // ANCHOR: span_step
+    /// Steps a payload along the row, from its value at the start to its value at the end, a pixel at a time.
+    #[inline]
+    pub fn step<P: Payload>(&self, from: P, to: P, limit: StepLimit, mut emit: impl FnMut(i32, P)) {
+        let columns = self.columns();
+        let slope = P::slope(from, to, self.end - self.start);
+        let skipped = f64::from(columns.start) - self.start.trunc();
+        let mut value = if skipped > 0.0 { from.stepped(slope, skipped) } else { from };
+        for x in columns {
+            if limit == StepLimit::Everywhere {
+                value = value.clamped(from, to, limit);
+            }
+            emit(x, value);
+            value = value.stepped(slope, 1.0);
+        }
+    }
+    // ANCHOR_END: span_step
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scanline::split;
+    use glam::DVec2;
+    use proptest::prelude::*;
+
+    fn point() -> impl Strategy<Value = DVec2> {
+        (-20.0..60.0, -20.0..60.0).prop_map(DVec2::from)
+    }
+
+    proptest! {
+        #[test]
+        fn a_payload_clamped_everywhere_stays_between_its_ends(
+            triangle in prop::array::uniform3(point()), values in prop::array::uniform3(-5.0..5.0),
+        ) {
+            let (low, high) = (values.iter().copied().fold(f64::MAX, f64::min), values.iter().copied().fold(f64::MIN, f64::max));
+            let walk = Walk { limit: StepLimit::Everywhere, ..Walk::default() };
+            let Some(split) = split(triangle) else { return Ok(()) };
+            let carried = split.attach(values, |a, b, t| (b - a) * t + a);
+            for (half, carried) in [split.lower, split.upper].iter().zip(&carried) {
+                half.step(carried, walk, Rect::sized(40, 30), |span, [start, end]| {
+                    span.step(start, end, walk.limit, |_, value| {
+                        assert!(value >= low - 1e-9 && value <= high + 1e-9, "{value} is not in {low}..{high}");
+                    });
+                });
+            }
+        }
+    }
+}

@@ -1,0 +1,85 @@
+//! Pictures into image files: the last step, after the framebuffer.
+//!
+//! ```no_run
+//! use rasterbook::{Color, Framebuffer};
+//!
+//! let mut framebuffer = Framebuffer::new(64, 48);
+//! framebuffer.set(10, 20, Color::RED);
+//! framebuffer.save("dot.png")?;
+//! # Ok::<(), rasterbook::files::FileError>(())
+//! ```
+
+use std::fs;
+use std::io::Cursor;
+use std::path::Path;
+
+use image::{ImageError, ImageFormat, RgbImage};
+
+use crate::files::FileError;
+use crate::framebuffer::Framebuffer;
+
+/// The formats that pictures can be written in.
+const WRITABLE: [ImageFormat; 4] = [ImageFormat::Png, ImageFormat::Bmp, ImageFormat::Tga, ImageFormat::Pnm];
+
+impl Framebuffer {
+    /// Writes the picture into a file, whole or not at all; its extension names the format: `.png`, `.bmp`, `.tga` or
+    /// `.ppm`.
+    ///
+    /// # Errors
+    /// If the extension names no such format, or the file cannot be written.
+    pub fn save(&self, path: impl AsRef<Path>) -> Result<(), FileError> {
+        let path = path.as_ref();
+        let format = ImageFormat::from_path(path).ok().filter(|format| WRITABLE.contains(format));
+        let format = format
+            .ok_or_else(|| FileError::new(path, "names no format that is written: .png .bmp .tga .ppm"))?;
+        let bytes = encode(self, format).map_err(|error| FileError::from_source(path, error))?;
+        replace(path, &bytes)
+    }
+}
+
+/// A picture as the bytes of an image file.
+pub(crate) fn encode(picture: &Framebuffer, format: ImageFormat) -> Result<Vec<u8>, ImageError> {
+    let mut bytes = Vec::new();
+    if format == ImageFormat::Pnm {
+        picture.write_ppm(&mut bytes)?;
+        return Ok(bytes);
+    }
+    let image = RgbImage::from_raw(picture.width(), picture.height(), picture.rgb_from_top());
+    image.unwrap_or_default().write_to(&mut Cursor::new(&mut bytes), format)?;
+    Ok(bytes)
+}
+
+/// Writes a whole file or nothing: under another name first, which then takes the place of the old file.
+pub(crate) fn replace(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    fs::create_dir_all(folder).map_err(|error| FileError::from_source(folder, error))?;
+    let part = folder.join(format!(".rasterbook.{}.part", std::process::id()));
+    let written = fs::write(&part, bytes).and_then(|()| fs::rename(&part, path));
+    written.map_err(|error| {
+        let _ = fs::remove_file(&part);
+        FileError::from_source(path, error)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_format_holds_the_picture() {
+        let mut picture = Framebuffer::new(3, 2);
+        picture.set(2, 1, crate::Color::rgb(10, 20, 30));
+        for format in WRITABLE {
+            let bytes = encode(&picture, format).expect("a small picture");
+            let read = image::load_from_memory_with_format(&bytes, format).expect("just written").to_rgb8();
+            assert_eq!(read.dimensions(), (3, 2));
+            assert_eq!(read.get_pixel(2, 0).0, [10, 20, 30], "{format:?}");
+        }
+    }
+
+    #[test]
+    fn unknown_formats_are_refused() {
+        let error = Framebuffer::new(1, 1).save("picture.doc").expect_err("no picture format");
+        assert_eq!(error.to_string(), "picture.doc: names no format that is written: .png .bmp .tga .ppm");
+    }
+}

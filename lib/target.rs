@@ -1,0 +1,86 @@
+//! Chapter 6: what is drawn into, a plane of colors and a plane of depths.
+//!
+//! The end of the data flow: a fragment that passes the depth test writes into both planes.
+//!
+//! ```
+//! use rasterbook::{Color, Target};
+//! use rasterbook::depth::DepthTest;
+//!
+//! let mut target = Target::new(4, 3);
+//! target.clear(Color::BLACK, 1000.0);
+//! if target.depth.test_and_set(1, 1, 340.0, DepthTest::LessOrEqual) {
+//!     target.color.set(1, 1, Color::RED);
+//! }
+//! assert_eq!(target.color.get(1, 1), Some(Color::RED));
+//! ```
+
+use crate::color::Color;
+use crate::depth::{DepthBuffer, DepthTest};
+use crate::framebuffer::Framebuffer;
+use crate::interpolate::{Interpolation, Projected, ScreenVertex, step_parameter_and_depth};
+use crate::real::Scalar;
+use crate::scanline::Walk;
+
+/// What is drawn into: a plane of colors and a plane of depths, of the precision in which the rasterizer computes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Target<D = f64> {
+    /// The picture.
+    pub color: Framebuffer,
+    /// How far away what is seen in each pixel is.
+    pub depth: DepthBuffer<D>,
+}
+
+impl<D: Scalar> Target<D> {
+    /// A target of `width` × `height` pixels; clear it before drawing.
+    ///
+    /// # Panics
+    /// As [`Framebuffer::new`] does.
+    #[must_use]
+    pub fn sized(width: u32, height: u32) -> Self {
+        Self { color: Framebuffer::new(width, height), depth: DepthBuffer::new(width, height) }
+    }
+
+    /// A target for the picture of a framebuffer: of its size, black, and with the same observer.
+    #[must_use]
+    pub fn like(framebuffer: &Framebuffer) -> Self {
+        let mut target = Self::sized(framebuffer.width(), framebuffer.height());
+        target.color.set_observer(framebuffer.observer());
+        target.depth.set_observer(framebuffer.observer());
+        target
+    }
+
+    /// Gives all pixels a color and a depth: what the last frame has left must not stay. Book, section 9.4.1.
+    pub fn clear(&mut self, color: Color, depth: D) {
+        self.color.clear(color);
+        self.depth.clear(depth);
+    }
+}
+
+impl Target {
+    /// A target of `width` × `height` pixels in double precision; clear it before drawing.
+    ///
+    /// # Panics
+    /// As [`Framebuffer::new`] does.
+    #[must_use]
+    pub fn new(width: u32, height: u32) -> Self {
+        Self::sized(width, height)
+    }
+
+    // ANCHOR: fill
+    /// Fills a triangle where it is not behind what has been drawn (chapters 7 and 8; the pipeline of chapter 9 has more
+    /// options). Screen space; the depth of a vertex, beside its ω and values, changes linearly on the screen.
+    pub fn fill<const N: usize>(
+        &mut self,
+        triangle: [ScreenVertex<(Projected<f64, N>, f64)>; 3],
+        color_of: impl Fn([f64; N]) -> Color,
+    ) {
+        let Self { color, depth } = self;
+        let (interpolation, walk) = (Interpolation::PerspectiveCorrect, Walk::default());
+        step_parameter_and_depth(triangle, interpolation, walk, color.scissor(), |x, y, point, z| {
+            if depth.test_and_set(x, y, z, DepthTest::LessOrEqual) {
+                color.set(x, y, color_of(point.values));
+            }
+        });
+    }
+    // ANCHOR_END: fill
+}
