@@ -9,23 +9,33 @@
 //! assert_eq!(error.to_string(), "folder/bricks.png: is empty");
 //! ```
 
+mod decode;
+mod orientation;
+
 use std::error::Error;
 use std::fmt;
-use std::io::Cursor;
+use std::fs::File;
+use std::io::Read;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use image::{DynamicImage, ImageFormat, ImageReader, Limits};
+use image::ImageFormat;
 
-use crate::color::Color;
-use crate::framebuffer::Framebuffer;
+use self::decode::decode_within;
 use crate::texture::Texture;
 
+/// The largest file that is read: 256 MiB.
+pub const MAX_FILE_BYTES: u64 = 1 << 28;
+
+/// The most pixels that an image may have, and all textures of a model together: 8192×8192.
+pub const MAX_TEXELS: u64 = 1 << 26;
+
 /// Why a file cannot be used.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct FileError {
     path: PathBuf,
     cause: String,
-    source: Option<Box<dyn Error + Send + Sync>>,
+    source: Option<Arc<dyn Error + Send + Sync>>,
 }
 
 impl FileError {
@@ -35,13 +45,13 @@ impl FileError {
 
     /// The cause is an error of another layer, which is kept.
     pub(crate) fn from_source(path: &Path, source: impl Error + Send + Sync + 'static) -> Self {
-        Self { path: path.to_owned(), cause: source.to_string(), source: Some(Box::new(source)) }
+        Self { path: path.to_owned(), cause: source.to_string(), source: Some(Arc::new(source)) }
     }
 }
 
 impl fmt::Display for FileError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.path.display(), self.cause)
+        f.write_str(&shown(&format!("{}: {}", self.path.display(), self.cause)))
     }
 }
 
@@ -54,28 +64,69 @@ impl Error for FileError {
 /// What is odd about a file that can be used all the same.
 pub type Warnings = Vec<String>;
 
-/// The bytes of a file: not of a folder, nor of a device that never ends.
+/// Text from a file as a terminal may show it: what could move the cursor, change colors or turn the direction of
+/// writing is escaped.
+pub(crate) fn shown(text: &str) -> String {
+    let turns = |c| matches!(c, '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    let mut safe = String::with_capacity(text.len());
+    for c in text.chars() {
+        if c.is_control() || turns(c) {
+            safe.extend(c.escape_default());
+        } else {
+            safe.push(c);
+        }
+    }
+    safe
+}
+
+/// The bytes of a file: the one door for all that is read. A folder, a pipe and a device are refused, and so is a file
+/// larger than [`MAX_FILE_BYTES`], before it is read.
 pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>, FileError> {
+    read_file_within(path, MAX_FILE_BYTES)
+}
+
+/// As [`read_file`], with no more than `limit` bytes.
+pub(crate) fn read_file_within(path: &Path, limit: u64) -> Result<Vec<u8>, FileError> {
     let failure = |error| FileError::from_source(path, error);
     let metadata = std::fs::metadata(path).map_err(failure)?;
     if !metadata.is_file() {
-        return Err(FileError::new(path, "is no file"));
+        let what = if metadata.is_dir() { "is a folder" } else { "is no regular file: a pipe or a device" };
+        return Err(FileError::new(path, what));
     }
-    std::fs::read(path).map_err(failure)
+    let too_large = |size| {
+        let most = format!("files of up to {MAX_FILE_BYTES} ({} MiB) are read", MAX_FILE_BYTES >> 20);
+        let left = if limit < MAX_FILE_BYTES { format!(", and {limit} are left") } else { String::new() };
+        FileError::new(path, format!("has {size} bytes; {most}{left}"))
+    };
+    if metadata.len() > limit {
+        return Err(too_large(metadata.len().to_string()));
+    }
+    let mut bytes = Vec::with_capacity(metadata.len() as usize);
+    // It may grow while it is read.
+    File::open(path).and_then(|file| file.take(limit + 1).read_to_end(&mut bytes)).map_err(failure)?;
+    if bytes.len() as u64 > limit {
+        return Err(too_large(format!("more than {limit}")));
+    }
+    Ok(bytes)
 }
 
 /// Reads a texture from an image file (PNG, BMP, TGA, JPEG); what a file is says its content, not its name.
 ///
 /// # Errors
-/// If the file cannot be read or is no such image, or if it is larger than 16384×16384 pixels or 1 GiB in memory.
+/// If the file cannot be read or is no such image, or if it is larger than [`MAX_FILE_BYTES`] or [`MAX_TEXELS`].
 pub fn load_texture(path: &Path) -> Result<(Texture, Warnings), FileError> {
+    load_texture_within(path, MAX_TEXELS)
+}
+
+/// As [`load_texture`], with no more than `max_texels` pixels.
+pub(crate) fn load_texture_within(path: &Path, max_texels: u64) -> Result<(Texture, Warnings), FileError> {
     let bytes = read_file(path)?;
-    let (texture, format) = decode_texture(&bytes, path)?;
+    let (texture, format) = decode_within(&bytes, path, max_texels)?;
     let mut warnings = Warnings::new();
     if let Ok(named) = ImageFormat::from_path(path)
         && named != format
     {
-        warnings.push(format!("{}: is a {format:?} file, whatever its name says", path.display()));
+        warnings.push(shown(&format!("{}: is a {format:?} file, whatever its name says", path.display())));
     }
     Ok((texture, warnings))
 }
@@ -85,47 +136,5 @@ pub fn load_texture(path: &Path) -> Result<(Texture, Warnings), FileError> {
 /// # Errors
 /// As [`load_texture`].
 pub fn decode_texture(bytes: &[u8], path: &Path) -> Result<(Texture, ImageFormat), FileError> {
-    if bytes.is_empty() {
-        return Err(FileError::new(path, "is empty"));
-    }
-    let guessed = image::guess_format(bytes).or_else(|_| ImageFormat::from_path(path));
-    let format = guessed
-        .map_err(|_| FileError::new(path, "is no image that can be read here (PNG, BMP, TGA, JPEG)"))?;
-    let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
-    let mut limits = Limits::default();
-    limits.max_image_width = Some(Framebuffer::MAX_SIDE);
-    limits.max_image_height = Some(Framebuffer::MAX_SIDE);
-    limits.max_alloc = Some(1 << 30);
-    reader.limits(limits);
-    let image = reader.decode().map_err(|error| FileError::from_source(path, error))?;
-    if image.width() == 0 || image.height() == 0 {
-        return Err(FileError::new(path, "has no pixels"));
-    }
-    Ok((texture_of(image), format))
-}
-
-/// An image, whose first row is on top, as a texture, whose first row is at the bottom.
-fn texture_of(image: DynamicImage) -> Texture {
-    let pixels = image.into_rgb8();
-    let texels =
-        pixels.rows().rev().flatten().map(|pixel| Color::rgb(pixel[0], pixel[1], pixel[2])).collect();
-    Texture::new(pixels.width(), pixels.height(), texels)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_lowest_row_of_an_image_file_is_the_first_of_a_texture() {
-        // Red above green.
-        let image = image::RgbImage::from_fn(1, 2, |_, row| {
-            image::Rgb(if row == 0 { [255, 0, 0] } else { [0, 255, 0] })
-        });
-        let mut bytes = Cursor::new(Vec::new());
-        image.write_to(&mut bytes, ImageFormat::Png).expect("two pixels");
-        let (texture, _) = decode_texture(bytes.get_ref(), "a.png".as_ref()).expect("a picture");
-        let at = |v: f64| Color::truncated(texture.nearest([0.5, v], crate::texture::AddressMode::Clamp));
-        assert_eq!((at(0.25), at(0.75)), (Color::GREEN, Color::RED), "v points up");
-    }
+    decode_within(bytes, path, MAX_TEXELS)
 }

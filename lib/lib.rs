@@ -152,8 +152,6 @@ pub mod mipmap;
 #[cfg(feature = "files")]
 pub mod files;
 #[cfg(feature = "files")]
-mod normals;
-#[cfg(feature = "files")]
 pub mod model;
 #[cfg(feature = "files")]
 mod save;

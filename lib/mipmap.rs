@@ -90,10 +90,16 @@ impl MipMaps {
     }
     // ANCHOR_END: level_of_detail
 
-    /// Bilinear in the level nearest to `level`, as channels in 0..=255: levels meet in lines.
+    /// A level that there is: the last one for all beyond it, the first one for all before it and for NaN.
+    fn clamped<R: Real>(&self, level: R) -> R {
+        level.max(R::of(0.0)).min(R::of((self.count() - 1) as f64))
+    }
+
+    /// Bilinear in the level nearest to `level`, as channels in 0..=255: levels meet in lines. Levels beyond the last
+    /// are the last.
     #[must_use]
     pub fn bilinear<R: Real>(&self, uv: [R; 2], level: R, mode: AddressMode) -> [R; 3] {
-        let level = (level + R::of(0.5)).floor();
+        let level = (self.clamped(level) + R::of(0.5)).floor();
         let size: [R; 2] = R::gather(level, R::of(0.0), |level, _| self.size_and_start(level).0);
         let [start]: [R; 1] = R::gather(level, R::of(0.0), |level, _| [self.size_and_start(level).1]);
         bilinear(uv, size, mode, |column, row| {
@@ -101,10 +107,12 @@ impl MipMaps {
         })
     }
 
-    /// Bilinear in the two levels around `level`, and linear between them: no line shows.
+    /// Bilinear in the two levels around `level`, and linear between them: no line shows. Levels beyond the last are the
+    /// last.
     #[must_use]
     pub fn trilinear<R: Real>(&self, uv: [R; 2], level: R, mode: AddressMode) -> [R; 3] {
-        let [low, high] = [level.floor(), (level.floor() + R::of(1.0)).min(R::of((self.count() - 1) as f64))];
+        let level = self.clamped(level);
+        let [low, high] = [level.floor(), self.clamped(level.floor() + R::of(1.0))];
         linear(self.bilinear(uv, low, mode), self.bilinear(uv, high, mode), level - low)
     }
 
@@ -186,8 +194,12 @@ mod tests {
         let [first, second] = [at(0.0), at(1.0)];
         assert_eq!(at(0.25), first + (second - first) * 0.25);
         assert_eq!(maps.bilinear([0.5, 0.5], 0.6, AddressMode::Clamp)[0], second);
-        for level in [f64::NAN, -5.0, 99.0] {
-            let _ = maps.trilinear([0.5_f64, 0.5], level.clamp(0.0, 2.0), AddressMode::Repeat);
+        let last = maps.levels[2].texel(0, 0);
+        for (level, expected) in
+            [(-5.0, at(0.0)), (2.5, last[0]), (99.0, last[0]), (f64::INFINITY, last[0]), (f64::NAN, at(0.0))]
+        {
+            assert_eq!(at(level), expected, "{level}");
+            assert_eq!(maps.bilinear([0.5, 0.5], level, AddressMode::Clamp)[0], expected, "{level}");
         }
     }
 }

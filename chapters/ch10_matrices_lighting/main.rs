@@ -26,7 +26,7 @@ pub(crate) const CHAPTER: Chapter = Chapter {
     name: "ch10_matrices_lighting",
     question: "How does a thing get its place, and its light and shade?",
     variants: &[
-        Variant::of_model("lit", lit::lit, ["pawn.obj", "wood.png"], "a model turns in the light: bright where it faces the light, never black; a few specks are seams that the scanline fill leaves open")
+        Variant::of_model("lit", lit::lit, ["pawn.obj", "wood.png"], "a model turns in the light: bright where it faces the light, never black; a few specks are seams that the scanline fill leaves open, or first texels where u ends at 1")
             .source("sections 11.1 to 11.3").animated(TURN),
         Variant::with_pipeline("rotation", matrices::rotation, "a triangle turns about an upright axis, a degree a frame; it vanishes when we see its back")
             .source("section 10.6").animated(TURN),
@@ -35,7 +35,7 @@ pub(crate) const CHAPTER: Chapter = Chapter {
         Variant::with_pipeline("camera", matrices::camera, "two boxes, a ball and a pawn on bricks, seen from the upper right by a look-at matrix: the eye looks down, and upright edges lean outwards"),
         Variant::of_model("spikes", lit::spikes, ["sphere.obj", "numbers.png"], "short dashes of wrong color on the ball: texels from beyond a triangle, fetched with t past an edge's end; try --zoom 4 --compare")
             .source("section 11.4").animated(TURN).remedied_by("spikes-fixed"),
-        Variant::of_model("spikes-fixed", lit::lit, ["sphere.obj", "numbers.png"], "the same ball with t limited on the edges: nearly all dashes are gone")
+        Variant::of_model("spikes-fixed", lit::lit, ["sphere.obj", "numbers.png"], "the same ball with t limited on the edges: nearly all dashes are gone; where u ends at 1, a first texel is left here and there")
             .source("section 11.4").animated(TURN),
         Variant::of_model("exact", lit::lit, ["sphere.obj", "numbers.png"], "the same ball by the exact rasterizer: no value is ever stepped past an edge, and no dash is left")
             .exact().animated(TURN),

@@ -178,6 +178,7 @@ fn hit_fields(triangle: &ScreenTriangle, number: usize, hit: &Hit, pixel: Pixel,
         return fields;
     }
     fields.extend(parameters(triangle, hit));
+    fields.extend(end_of_row(hit));
     fields.push(projected_values(triangle, hit));
     // At an edge's end the book's remedy clamps t alone.
     let limit = match triangle.walk.limit {
@@ -250,6 +251,13 @@ fn parameters(triangle: &ScreenTriangle, hit: &Hit) -> [Field; 3] {
         field("interpolation", "", Value::Text(name.to_owned())),
         field("", "formula", Value::Text(format!("{formula}; a, b: ends of the row"))),
     ]
+}
+
+/// What is to be known where t′ reaches the end of a row: only the book's scanlines do.
+fn end_of_row(hit: &Hit) -> Option<Field> {
+    let text = "t′ reaches or passes 1, the end of the row: a texture coordinate that ends at 1 there begins anew with the \
+                address mode Repeat, and shows the first texel. Clamp, and the exact rasterizer, keep the last one";
+    (hit.along >= 1.0).then(|| field("end_of_row", "note", Value::Text(text.to_owned())))
 }
 
 /// ω and all values: at the vertices, at both ends of the row, and at the pixel in both ways.

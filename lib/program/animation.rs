@@ -1,6 +1,5 @@
 //! Animations: all frames of a variant in one file. Frames are drawn in parallel, and written in their order.
 
-use std::collections::BTreeSet;
 use std::error::Error;
 use std::io::IsTerminal;
 use std::time::Duration;
@@ -9,7 +8,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use rayon::prelude::*;
 
 use super::output::AnimationFormat;
-use crate::color::Color;
+use super::palette::Indexed;
 use crate::figure::Animation;
 use crate::framebuffer::Framebuffer;
 
@@ -106,22 +105,11 @@ fn encode_gif(animation: Animation, draw: Draw<'_>) -> Result<Vec<u8>, Box<dyn E
     Ok(bytes)
 }
 
-/// A frame with its own palette: exact for up to 256 colors, else the nearest ones that can be had.
+/// A frame with its own palette: exact for up to 256 colors.
 fn gif_frame(picture: &Framebuffer) -> gif::Frame<'static> {
     let (width, height) = size_of(picture);
-    let (width, height) = (width as u16, height as u16);
-    let runs: Vec<&[Color]> = picture.rows_from_top().flat_map(|row| row.chunk_by(|a, b| a == b)).collect();
-    let colors: BTreeSet<[u8; 3]> = runs.iter().map(|run| run[0].channels()).collect();
-    if colors.len() > 256 {
-        return gif::Frame::from_rgb_speed(width, height, &picture.rgb_from_top(), 10);
-    }
-    let palette: Vec<[u8; 3]> = colors.into_iter().collect();
-    let mut pixels = Vec::with_capacity(usize::from(width) * usize::from(height));
-    for run in runs {
-        let index = palette.binary_search(&run[0].channels()).unwrap_or_default() as u8;
-        pixels.resize(pixels.len() + run.len(), index);
-    }
-    gif::Frame::from_palette_pixels(width, height, pixels, palette.as_flattened(), None)
+    let Indexed { palette, pixels } = Indexed::new(picture);
+    gif::Frame::from_palette_pixels(width as u16, height as u16, pixels, palette.as_flattened(), None)
 }
 
 fn size_of(picture: &Framebuffer) -> (u32, u32) {

@@ -132,10 +132,10 @@ fn subject(chapter: &Chapter) -> [Arg; 4] {
     // Where no variant draws a model, help does not speak of them.
     let is_hidden = !chapter.variants.iter().any(Variant::has_model);
     [
-        option("model", "FILE.obj", "Draw this model (Wavefront OBJ), where the variant draws one")
+        option("model", "FILE.obj", "Draw this model (Wavefront OBJ: its faces, with Kd and map_Kd of their materials), where the variant draws one; a warning says what is left out")
             .value_parser(path.clone())
             .conflicts_with("all"),
-        option("texture", "FILE", "Cover the model with this image (PNG, BMP, TGA, JPEG)")
+        option("texture", "FILE", "Cover the model with this image (PNG, BMP, TGA, JPEG; transparent is white)")
             .value_parser(path)
             .conflicts_with("all"),
         switch("as-is", "Leave the model where it is and as large as it is, not centered and scaled to fit")
@@ -197,8 +197,11 @@ fn how_to_draw(chapter: &Chapter) -> [Arg; 6] {
         option("frame", "N", "Draw one frame of an animation [default: 0]")
             .value_parser(value_parser!(u32))
             .conflicts_with("all"),
-        switch("animate", "Draw all frames of an animation into one file")
-            .conflicts_with_all(["all", "frame", "compare"]),
+        switch(
+            "animate",
+            "Draw all frames of an animation into one file: GIF, 256 colors a frame, or PNG, which keeps all",
+        )
+        .conflicts_with_all(["all", "frame", "compare"]),
         option("zoom", "N[@X,Y]", zoom).value_parser(parse_zoom),
         option(
             "compare",

@@ -7,6 +7,7 @@ mod animation;
 mod arguments;
 mod failure;
 mod output;
+mod palette;
 mod run;
 
 pub use failure::Failure;

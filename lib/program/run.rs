@@ -11,7 +11,7 @@ use super::failure::Failure;
 use super::output::{Destination, note, say};
 use crate::figure::picture::{Zoom, difference, side_by_side, zoomed};
 use crate::figure::{Chapter, DrawOptions, Mistake, RasterizerChoice, Subject, Variant};
-use crate::files::{FileError, load_texture};
+use crate::files::{FileError, load_texture, shown};
 use crate::framebuffer::Framebuffer;
 use crate::inspect::{Steps, history};
 use crate::model::{Model, NormalStyle};
@@ -193,7 +193,7 @@ impl Given {
             warnings.extend(more);
             if request.texture.is_some() && !loaded.has_texture_coordinates() {
                 let odd = "has no texture coordinates: one texel covers all of it";
-                warnings.push(format!("{}: {odd}", path.display()));
+                warnings.push(shown(&format!("{}: {odd}", path.display())));
             }
             model = Some(if request.as_is { loaded } else { loaded.fitted(PLACE.0, PLACE.1) });
         }

@@ -2,7 +2,12 @@
 //!
 //! Where the data flow begins for a picture of something: a Wavefront OBJ file becomes meshes.
 //!
-//! Polygons become fans of triangles from their first corner, which is right for convex ones.
+//! ```text
+//!   OBJ file ─► plain text ─► parser ─► polygons ─► triangles, normals ─► parts
+//!   MTL files ─────────────────────────► textures, tinted ─────────────────┘
+//! ```
+//!
+//! What is read, what is left out and what is warned of is on the page of chapter 10.
 //!
 //! # Handedness
 //!
@@ -21,24 +26,30 @@
 //! # Ok::<(), rasterbook::files::FileError>(())
 //! ```
 
-use std::collections::HashMap;
-use std::fs::File;
-use std::io::{BufReader, Cursor, Read};
+mod materials;
+mod normals;
+mod parts;
+mod statements;
+mod text;
+mod triangulate;
+
 use std::path::Path;
 
-use crate::color::Color;
-use crate::files::{FileError, Warnings, load_texture, read_file};
+use crate::files::{FileError, Warnings, read_file, shown};
 use crate::mesh::Mesh;
-use crate::normals::{SmoothNormals, face_normal};
 use crate::texture::Texture;
-use glam::{DVec3, dvec3};
+use glam::DVec3;
+
+use self::materials::Materials;
+use self::parts::Parts;
+use self::text::PlainText;
 
 /// A corner of a model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModelVertex {
     /// Model space, left-handed.
     pub position: DVec3,
-    /// The direction that stands upright on the surface; of length 1 if it was computed, as in the file if not.
+    /// The direction that stands upright on the surface; of length 1.
     pub normal: DVec3,
     /// Texture coordinates, (0, 0) at the picture's lower left.
     pub uv: [f64; 2],
@@ -49,7 +60,7 @@ pub struct ModelVertex {
 pub struct Part {
     /// Its triangles.
     pub mesh: Mesh<ModelVertex>,
-    /// The texture that its material names (`map_Kd`), or one texel of its color (`Kd`).
+    /// The texture that its material names (`map_Kd`), tinted by its color (`Kd`); or one texel of that color.
     pub texture: Option<Texture>,
 }
 
@@ -63,8 +74,8 @@ pub struct Model {
 /// How normals are made where a file has none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum NormalStyle {
-    /// At a shared position the mean of the faces around it, in whichever object of the file, larger faces counting
-    /// more: a smooth surface.
+    /// At a shared position the mean of the faces around it, in whichever object of the file, each as much as its angle
+    /// there: a smooth surface.
     #[default]
     Smooth,
     /// Those of the faces: edges show. Normals in the file are not used.
@@ -102,51 +113,29 @@ impl Model {
         style: NormalStyle,
         progress: impl FnMut(u64, u64),
     ) -> Result<(Self, Warnings), FileError> {
-        if bytes.contains(&0) {
-            return Err(FileError::new(path, "is not text, so it is no OBJ file"));
+        let failure = |cause: String| FileError::new(path, cause);
+        check_text(bytes).map_err(failure)?;
+        let mut text = PlainText::new(bytes, progress);
+        let options =
+            tobj::LoadOptions { ignore_points: true, ignore_lines: true, ..tobj::LoadOptions::default() };
+        let parsed = tobj::load_obj_buf(&mut text, &options, |_| Err(tobj::LoadError::OpenFileFailed));
+        let ((models, _), found) = text.finish(parsed).map_err(failure)?;
+        if found.objects.is_empty() {
+            return Err(failure("has no faces; is it an OBJ file?".to_owned()));
         }
-        // Comments and names in files from the wild come in all encodings.
-        let text = String::from_utf8_lossy(bytes);
-        let total = text.len() as u64;
-        let counting = Counting { inner: Cursor::new(text.as_bytes()), read: 0, total, progress };
-        let options = tobj::LoadOptions {
-            triangulate: true,
-            ignore_points: true,
-            ignore_lines: true,
-            ..tobj::LoadOptions::default()
-        };
-        let folder = path.parent().unwrap_or(Path::new(""));
-        let (models, materials) =
-            tobj::load_obj_buf(&mut BufReader::with_capacity(1 << 16, counting), &options, |library| {
-                let mut library = BufReader::new(
-                    File::open(folder.join(library)).map_err(|_| tobj::LoadError::OpenFileFailed)?,
-                );
-                let mut bytes = Vec::new();
-                library.read_to_end(&mut bytes).map_err(|_| tobj::LoadError::ReadError)?;
-                tobj::load_mtl_buf(&mut String::from_utf8_lossy(&bytes).as_bytes())
-            })
-            .map_err(|error| FileError::new(path, format!("is no valid OBJ file: {error}")))?;
 
-        let mut warnings = Warnings::new();
-        let materials = materials.unwrap_or_else(|error| {
-            warnings.push(format!("{}: its material library cannot be used: {error}", path.display()));
-            Vec::new()
-        });
-        let textures = Textures::load(&materials, folder, &mut warnings);
-        let given = Given::of_faces(&text);
-        warnings.extend(given.warnings(path));
-        let smooth = smooth_normals(models.iter().map(|model| &model.mesh));
-        let mut parts = Vec::new();
-        for model in models.iter().filter(|model| !model.mesh.indices.is_empty()) {
-            let mesh =
-                part_mesh(&model.mesh, given, style, &smooth).map_err(|cause| FileError::new(path, cause))?;
-            let texture = model.mesh.material_id.and_then(|id| textures.0.get(id).cloned().flatten());
-            parts.push(Part { mesh, texture });
+        let of_this = |warning: String| format!("{}: {warning}", path.display());
+        let mut warnings: Warnings = found.warnings().into_iter().map(of_this).collect();
+        let mut materials = Materials::load(path, &found.libraries, &mut warnings);
+        let textures = materials.textures(&found.materials, &mut warnings);
+        let mut parts = Parts::new(&models, &found, style);
+        for (model, object) in models.iter().zip(&found.objects) {
+            let texture = object.material.and_then(|material| textures.get(material).cloned().flatten());
+            parts.add(&model.mesh, *object, texture);
         }
-        if parts.is_empty() {
-            return Err(FileError::new(path, "has no faces; is it an OBJ file?"));
-        }
-        Ok((Self { parts }, warnings))
+        let (parts, more) = parts.finish().map_err(failure)?;
+        warnings.extend(more.into_iter().map(of_this));
+        Ok((Self { parts }, limited(warnings)))
     }
 
     /// Whether its corners have texture coordinates that differ; without them a texture shows one texel alone.
@@ -190,169 +179,34 @@ impl Model {
     }
 }
 
-/// A reader that tells how far it has come.
-struct Counting<R, F> {
-    inner: R,
-    read: u64,
-    total: u64,
-    progress: F,
-}
-
-impl<R: Read, F: FnMut(u64, u64)> Read for Counting<R, F> {
-    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
-        let count = self.inner.read(buffer)?;
-        self.read += count as u64;
-        (self.progress)(self.read, self.total);
-        Ok(count)
+/// Refuses what is no text of bytes.
+fn check_text(bytes: &[u8]) -> Result<(), String> {
+    if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
+        return Err("is UTF-16 text; OBJ files are read as UTF-8 or ASCII".to_owned());
     }
-}
-
-/// What the faces of a file say of their corners. Where only some of them do, it is taken as if none did: a parser that
-/// has no number for a corner takes another one's.
-#[derive(Clone, Copy)]
-struct Given {
-    normals: bool,
-    uvs: bool,
-    some_normals: bool,
-    some_uvs: bool,
-}
-
-impl Given {
-    fn of_faces(text: &str) -> Self {
-        let mut given = Self { normals: true, uvs: true, some_normals: false, some_uvs: false };
-        let faces =
-            text.lines().filter_map(|line| line.trim_start().strip_prefix("f ").or(line.strip_prefix("f\t")));
-        for corner in faces.flat_map(str::split_whitespace) {
-            let mut numbers = corner.split('/').skip(1);
-            let [has_uv, has_normal] =
-                [(); 2].map(|()| numbers.next().is_some_and(|number| !number.is_empty()));
-            given.normals &= has_normal;
-            given.uvs &= has_uv;
-            given.some_normals |= has_normal;
-            given.some_uvs |= has_uv;
-        }
-        given
+    if bytes.contains(&0) {
+        return Err("is not text, so it is no OBJ file".to_owned());
     }
-
-    fn warnings(self, path: &Path) -> Warnings {
-        let mut warnings = Warnings::new();
-        for (some, all, what) in [
-            (self.some_normals, self.normals, "normals: they are computed for all"),
-            (self.some_uvs, self.uvs, "texture coordinates: none are used"),
-        ] {
-            if some && !all {
-                warnings.push(format!("{}: only some of its faces have {what}", path.display()));
-            }
-        }
-        warnings
-    }
+    Ok(())
 }
 
-/// The positions of an object, right-handed → left-handed.
-fn positions_of(mesh: &tobj::Mesh) -> Vec<DVec3> {
-    mesh.positions.chunks_exact(3).map(left_handed).collect()
-}
+/// The most warnings that one model gives.
+const MAX_WARNINGS: usize = 20;
 
-fn left_handed(v: &[f64]) -> DVec3 {
-    dvec3(v[0], v[1], -v[2])
-}
-
-/// The triangles of one object: a vertex for each combination of position, normal and texture coordinates that occurs.
-fn part_mesh(
-    mesh: &tobj::Mesh,
-    given: Given,
-    style: NormalStyle,
-    smooth: &SmoothNormals,
-) -> Result<Mesh<ModelVertex>, String> {
-    let (positions, faces) = (positions_of(mesh), mesh.indices.as_chunks().0);
-    let normals: Vec<DVec3> = mesh.normals.chunks_exact(3).map(left_handed).collect();
-    if let Some(bad) = positions.iter().chain(&normals).find(|v| !v.is_finite()) {
-        return Err(format!("has a coordinate that is not a finite number: {} {} {}", bad.x, bad.y, -bad.z));
+/// Warnings as they can be shown: names in them come from files. Of very many, how many more there are.
+fn limited(mut warnings: Warnings) -> Warnings {
+    let more = warnings.len().saturating_sub(MAX_WARNINGS);
+    if more > 0 {
+        warnings.truncate(MAX_WARNINGS);
+        warnings.push(format!("and {more} more of this kind"));
     }
-    if mesh.texcoords.iter().any(|coordinate| !coordinate.is_finite()) {
-        return Err("has a texture coordinate that is not a finite number".to_owned());
-    }
-
-    let has_normals =
-        given.normals && style == NormalStyle::Smooth && mesh.normal_indices.len() == mesh.indices.len();
-    let has_uvs = given.uvs && mesh.texcoord_indices.len() == mesh.indices.len();
-    let mut vertices = Vec::new();
-    let mut known = HashMap::new();
-    let mut indices = Vec::with_capacity(mesh.indices.len());
-    for (corner, &position) in mesh.indices.iter().enumerate() {
-        let face = corner / 3;
-        let uv = if has_uvs { mesh.texcoord_indices[corner] as usize } else { 0 };
-        // A smooth normal belongs to its position, a flat one to its face.
-        let normal = match style {
-            _ if has_normals => mesh.normal_indices[corner] as usize,
-            NormalStyle::Flat => face,
-            NormalStyle::Smooth => 0,
-        };
-        let index = *known.entry((position, normal, uv)).or_insert_with(|| {
-            let position = positions[position as usize];
-            vertices.push(ModelVertex {
-                position,
-                normal: match style {
-                    _ if has_normals => normals[normal],
-                    NormalStyle::Flat => face_normal(corners(&faces[face], &positions)),
-                    NormalStyle::Smooth => smooth.at(position),
-                },
-                uv: if has_uvs { [mesh.texcoords[2 * uv], mesh.texcoords[2 * uv + 1]] } else { [0.0, 0.0] },
-            });
-            (vertices.len() - 1) as u32
-        });
-        indices.push(index);
-    }
-    Mesh::indexed(vertices, indices).map_err(|error| error.to_string())
-}
-
-/// The normals that the faces of all objects make where they meet.
-fn smooth_normals<'a>(meshes: impl Iterator<Item = &'a tobj::Mesh>) -> SmoothNormals {
-    let mut normals = SmoothNormals::default();
-    for mesh in meshes {
-        let positions = positions_of(mesh);
-        for face in mesh.indices.as_chunks().0 {
-            normals.add(corners(face, &positions));
-        }
-    }
-    normals
-}
-
-/// Where the corners of a face are.
-fn corners(face: &[u32; 3], positions: &[DVec3]) -> [DVec3; 3] {
-    face.map(|corner| positions[corner as usize])
-}
-
-/// The textures of materials, in their order.
-struct Textures(Vec<Option<Texture>>);
-
-impl Textures {
-    fn load(materials: &[tobj::Material], folder: &Path, warnings: &mut Warnings) -> Self {
-        let texture_of = |material: &tobj::Material| {
-            let plain = material.diffuse.map(|color| {
-                let color = Color::truncated(color.map(|channel| channel * 255.0 + 0.5));
-                Texture::new(1, 1, vec![color])
-            });
-            let Some(name) = &material.diffuse_texture else { return plain };
-            match load_texture(&folder.join(name)) {
-                Ok((texture, more)) => {
-                    warnings.extend(more);
-                    Some(texture)
-                }
-                Err(error) => {
-                    warnings
-                        .push(format!("the texture of material '{}' cannot be used: {error}", material.name));
-                    plain
-                }
-            }
-        };
-        Self(materials.iter().map(texture_of).collect())
-    }
+    warnings.iter().map(|warning| shown(warning)).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::dvec3;
 
     fn parse(text: &str) -> Result<(Model, Warnings), FileError> {
         Model::parse(text.as_bytes(), "folder/test.obj".as_ref(), NormalStyle::Smooth)
@@ -424,15 +278,26 @@ mod tests {
     }
 
     #[test]
-    fn normals_of_some_faces_are_not_used() {
-        let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvn 1 0 0\nf 1//1 2//1 3//1\nf 2 4 3\n";
+    fn each_face_has_what_it_is_given() {
+        let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvn 5 0 0\nvn 0 0 0\nvt 0.25 0.75\nf 1/1/1 2/1/1 3/1/1\nf 2 4 3\n";
         let (model, warnings) = parse(text).expect("two faces");
+        assert!(warnings.is_empty(), "{warnings:?}");
+        let vertices = model.parts[0].mesh.vertices();
+        let of = |vertices: &[ModelVertex]| vertices.iter().map(|v| (v.normal, v.uv)).collect::<Vec<_>>();
+        assert_eq!(of(&vertices[..3]), [(DVec3::X, [0.25, 0.75]); 3], "of length 1");
+        assert_eq!(of(&vertices[3..]), [(DVec3::NEG_Z, [0.0, 0.0]); 3], "computed");
+        let (model, _) = parse(&text.replace("/1/1", "//2")).expect("two faces");
         assert!(
-            warnings.len() == 1 && warnings[0].contains("only some of its faces have normals"),
-            "{warnings:?}"
+            model.parts[0].mesh.vertices().iter().all(|v| v.normal == DVec3::NEG_Z),
+            "0 0 0 is no direction"
         );
-        let normals = model.parts[0].mesh.vertices().iter().map(|vertex| vertex.normal);
-        assert!(normals.into_iter().all(|normal| normal == dvec3(0.0, 0.0, -1.0)));
+    }
+
+    #[test]
+    fn normals_that_are_rounded_stay() {
+        let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0.5774 0.8165\nf 1//1 2//1 3//1\n";
+        let (model, _) = parse(text).expect("a triangle");
+        assert_eq!(model.parts[0].mesh.vertices()[0].normal, dvec3(0.0, 0.5774, -0.8165));
     }
 
     #[test]
@@ -444,7 +309,8 @@ mod tests {
         refused("v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/7 2/7 3/7\n", "out of bounds");
         refused("v 0 0 0\nv NaN 0 0\nv 0 1 0\nf 1 2 3\n", "not a finite number");
         refused("v 0 0 0\nv 1e999 0 0\nv 0 1 0\nf 1 2 3\n", "not a finite number");
-        refused("v 0 0\n", "position");
+        refused("v 0 0\n", "line 1: 'v' has 2 numbers");
+        refused("v 0 0 0 \nv 0 0 1-2\n", "line 2: position");
         refused("v 0 0 0\nf 1\n", "has no faces");
         let binary = Model::parse(&[0x7f, b'E', b'L', b'F', 0, 1, 2], "a.obj".as_ref(), NormalStyle::Smooth);
         assert!(binary.expect_err("binary").to_string().contains("is not text"));
@@ -455,8 +321,8 @@ mod tests {
         let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n";
         let (_, warnings) =
             parse(&format!("mtllib nowhere.mtl\nusemtl stone\n{square}")).expect("a triangle");
-        assert_eq!(warnings.len(), 1);
-        assert!(warnings[0].contains("material library"), "{warnings:?}");
+        assert_eq!(warnings.len(), 2);
+        assert!(warnings[0].contains("material library") && warnings[1].contains("'stone'"), "{warnings:?}");
         let latin_1 = [b"# caf\xe9 \xff\n".as_slice(), square.as_bytes()].concat();
         assert!(Model::parse(&latin_1, "a.obj".as_ref(), NormalStyle::Smooth).is_ok());
         let long = format!("# {}\n{square}", "x".repeat(10_000_000));
