@@ -12,7 +12,7 @@ use glam::dvec2;
 use rasterbook::exact::edge::Coverage;
 use rasterbook::figure::{Chapter, Variant, picture};
 use rasterbook::interpolate::{ScreenVertex, step_values};
-use rasterbook::scanline::{StepLimit, Walk};
+use rasterbook::payload::{StepLimit, Walk};
 use rasterbook::texture::{AddressMode, Texture};
 use rasterbook::{Color, Framebuffer};
 

@@ -11,11 +11,12 @@ use std::process::ExitCode;
 use glam::{dvec2, dvec3};
 use rasterbook::exact::edge::Coverage;
 use rasterbook::figure::{Chapter, Variant};
-use rasterbook::interpolate::{Interpolation, Projected, ScreenVertex, step_parameter, step_values};
-use rasterbook::scanline::Walk;
+use rasterbook::interpolate::{
+    Interpolation, Projected, ScreenVertex, perspective_weights, step_parameter, step_values,
+};
+use rasterbook::payload::Walk;
 use rasterbook::texture::{AddressMode, Texture};
 use rasterbook::transform::{perspective, perspective_divide};
-use rasterbook::varyings::perspective_weights;
 use rasterbook::{Color, Framebuffer, Rect};
 
 pub(crate) const CHAPTER: Chapter = Chapter {

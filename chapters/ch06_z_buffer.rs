@@ -12,7 +12,7 @@ use glam::{DVec2, dvec2, dvec3};
 use rasterbook::depth::{DepthEncoding, DepthTest, z_from_w};
 use rasterbook::figure::{Chapter, Variant};
 use rasterbook::interpolate::{Interpolation, Projected, ScreenVertex, step_parameter};
-use rasterbook::scanline::Walk;
+use rasterbook::payload::Walk;
 use rasterbook::texture::{AddressMode, Texture};
 use rasterbook::transform::{perspective, perspective_divide};
 use rasterbook::{Color, Framebuffer, Target};

@@ -201,7 +201,7 @@ pub fn clip_polygon<const N: usize, const CAP: usize>(
             Clip::Inside(vertex) => polygon[vertex],
             Clip::Cut { outer, inner, t } => ClipVertex::between(polygon[outer], polygon[inner], t),
         };
-        // Rounding can bend a convex polygon by a hair; a vertex that finds no room is such a hair.
+        // Rounding can make a convex polygon slightly concave; a vertex too many is due to that.
         let _ = kept.try_push(vertex);
     });
     kept
@@ -362,7 +362,7 @@ mod tests {
         prop::array::uniform3(position().prop_map(|p| ClipVertex { position: p, varyings: p.to_array() }))
     }
 
-    /// A triangle in the plane, ω = 1, larger than the window.
+    /// A triangle in the plane, ω = 1, larger than the view.
     fn flat_triangle() -> impl Strategy<Value = [ClipVertex<0>; 3]> {
         prop::array::uniform3(
             (-3.0..3.0, -3.0..3.0)
@@ -378,7 +378,7 @@ mod tests {
         twice.abs() / 2.0
     }
 
-    /// The area of a triangle inside the window −1..1, another way: integrate the length of its rows.
+    /// The area of a triangle inside the view −1..1, another way: integrate the length of its rows.
     fn area_by_rows(triangle: &[ClipVertex<0>; 3]) -> f64 {
         const ROWS: usize = 20_000;
         let mut area = 0.0;

@@ -156,15 +156,22 @@ impl<D: Scalar> DepthBuffer<D> {
         self.observer = observer;
     }
 
-    // ANCHOR: test_and_set
     /// Whether a fragment at (x, y) passes the test; if so, its depth replaces the stored one. Outside nothing passes.
     #[inline]
     pub fn test_and_set(&mut self, x: i32, y: i32, depth: D, test: DepthTest) -> bool {
         let Some(index) = self.rect.index(x, y) else { return false };
-        let passes = test.passes(depth, self.values[index]);
         if let Some(observer) = &self.observer {
-            observer.tested((x, y), depth.into(), self.values[index].into(), passes);
+            let stored = self.values[index];
+            observer.tested((x, y), depth.into(), stored.into(), test.passes(depth, stored));
         }
+        self.test_and_set_at(index, depth, test)
+    }
+
+    // ANCHOR: test_and_set
+    /// Whether a depth passes the test against the one that is stored for a pixel; if so, it replaces it.
+    #[inline]
+    fn test_and_set_at(&mut self, index: usize, depth: D, test: DepthTest) -> bool {
+        let passes = test.passes(depth, self.values[index]);
         if passes {
             self.values[index] = depth;
         }

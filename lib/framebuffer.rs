@@ -18,7 +18,6 @@ use crate::color::Color;
 use crate::observer::{Observer, SharedObserver};
 use crate::plane::PixelPlane;
 use crate::rect::Rect;
-use crate::scissor::Scissor;
 
 /// A plane of pixels. The origin is at the bottom left and y points up, as in the book's `SetPixel` (section 1.5).
 ///
@@ -105,7 +104,7 @@ impl Framebuffer {
         }
     }
 
-    /// Where the pixel (x, y) stands in memory; `None` outside the framebuffer.
+    /// Where the pixel (x, y) stands in memory; `None` outside the framebuffer. As [`Rect::index`], from (0, 0) on.
     #[inline]
     fn index(&self, x: i32, y: i32) -> Option<usize> {
         // A negative number becomes a very large one.
@@ -135,12 +134,6 @@ impl Framebuffer {
                 self.set(x, y, color);
             }
         }
-    }
-
-    /// All pixels, as the scissor that the drawing stages take.
-    #[must_use]
-    pub fn scissor(&self) -> Scissor {
-        Scissor { rect: self.rect(), observer: self.observer.clone() }
     }
 
     /// Exchanges pictures with another framebuffer; observers stay where they are.

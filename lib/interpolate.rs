@@ -16,10 +16,10 @@ use std::array::from_fn;
 use glam::DVec2;
 
 use crate::area::twice_signed_area;
-use crate::payload::Payload;
-use crate::real::Real;
+use crate::payload::{Payload, StepLimit, Walk};
+use crate::real::{Mask, Real};
 use crate::rect::Rect;
-use crate::scanline::{Edge, Half, StepLimit, Walk, split};
+use crate::scanline::{Edge, Half, Split, split};
 use crate::scissor::Scissor;
 
 // ANCHOR: barycentric_weights
@@ -168,6 +168,28 @@ impl Interpolation {
 }
 // ANCHOR_END: interpolation
 
+// ANCHOR: perspective_weights
+/// The weights of three points in space, from their weights on the screen.
+///
+/// ```text
+///             α′/ωa                                  1     α′   β′   γ′
+///     α = ───────────────────────     and with it   ── =  ── + ── + ──
+///         α′/ωa + β′/ωb + γ′/ωc                      ω     ωa   ωb   ωc
+/// ```
+///
+/// Where all ω are equal, as under an orthographic projection, nothing changes. Where that cannot be computed, because
+/// an ω or the sum below the line is zero, the weights stay as they are. Source: first note, formulas 4 to 7.
+#[must_use]
+pub fn perspective_weights<R: Real>(weights: [R; 3], w: [R; 3]) -> [R; 3] {
+    let zero = R::of(0.0);
+    let is_nonzero = |x: R| x.is_less(zero).not().and(zero.is_less(x).not()).not();
+    let parts: [R; 3] = from_fn(|i| weights[i] / w[i]);
+    let sum = parts[0] + parts[1] + parts[2];
+    let is_possible = w.into_iter().fold(is_nonzero(sum), |mask, w| mask.and(is_nonzero(w)));
+    from_fn(|i| R::select(is_possible, parts[i] / sum, weights[i]))
+}
+// ANCHOR_END: perspective_weights
+
 // ANCHOR: perspective_correct
 /// Formulas ⑨ and ⑧ of the book (section 5.4):
 ///
@@ -267,22 +289,40 @@ fn step_parameter_in<const N: usize>(
     let Some(split) = split(triangle) else { return };
     let between = |a, b, t| interpolation.between(a, b, t);
     let [lower_points, upper_points] = split.attach(points, between);
-    let [lower_depths, upper_depths] = split.attach(depths, |a, b, t| a + (b - a) * t);
+    let [lower_depths, upper_depths] = attach_depths(&split, depths);
     for (half, points, depths) in
         [(split.lower, lower_points, lower_depths), (split.upper, upper_points, upper_depths)]
     {
         // Up the sides: t′ goes from 0 at an edge's start to 1 at its end.
         half.step(&EdgeParameter::on(&depths), walk, scissor, |span, [left, right]| {
             // What is at the two ends of the row.
-            let start = between(points.left.start, points.left.end, left.t);
-            let end = between(points.right.start, points.right.end, right.t);
+            let [start, end] = ends_of_row(&points, [left.t, right.t], interpolation);
             // Along the row: t′ goes from 0 to 1 again.
-            let [from, to] = [EdgeParameter { t: 0.0, ..left }, EdgeParameter { t: 1.0, ..right }];
+            let [from, to] = EdgeParameter::along_row([left, right]);
             span.step(from, to, walk.limit, |x, here| {
                 emit(x, span.y, between(start, end, here.t), here.depth);
             });
         });
     }
+}
+
+/// The depths at the ends of the halves' edges.
+#[inline]
+pub(crate) fn attach_depths(split: &Split, depths: [f64; 3]) -> [Half<f64>; 2] {
+    split.attach(depths, |a, b, t| a + (b - a) * t)
+}
+
+/// What is at the two ends of a row, where the parameters on its sides are these.
+#[inline]
+pub(crate) fn ends_of_row<const N: usize>(
+    Half { left, right }: &Half<Projected<f64, N>>,
+    [t_left, t_right]: [f64; 2],
+    interpolation: Interpolation,
+) -> [Projected<f64, N>; 2] {
+    [
+        interpolation.between(left.start, left.end, t_left),
+        interpolation.between(right.start, right.end, t_right),
+    ]
 }
 // ANCHOR_END: step_parameter
 
@@ -290,20 +330,26 @@ fn step_parameter_in<const N: usize>(
 ///
 /// At an edge's end the book's remedy clamps t′ alone.
 #[derive(Clone, Copy)]
-struct EdgeParameter {
-    t: f64,
-    depth: f64,
+pub(crate) struct EdgeParameter {
+    pub(crate) t: f64,
+    pub(crate) depth: f64,
 }
 
 impl EdgeParameter {
     /// At the ends of the edges of a half on which the depths are these.
     #[inline]
-    fn on(depths: &Half<f64>) -> Half<Self> {
+    pub(crate) fn on(depths: &Half<f64>) -> Half<Self> {
         let edge = |depths: Edge<f64>| Edge {
             start: Self { t: 0.0, depth: depths.start },
             end: Self { t: 1.0, depth: depths.end },
         };
         Half { left: edge(depths.left), right: edge(depths.right) }
+    }
+
+    /// At the ends of a row, from what was reached on the two sides.
+    #[inline]
+    pub(crate) const fn along_row([left, right]: [Self; 2]) -> [Self; 2] {
+        [Self { t: 0.0, ..left }, Self { t: 1.0, ..right }]
     }
 }
 

@@ -63,6 +63,7 @@
 //!   ch1  color         what one pixel shows
 //!   ch1  rect          rectangles of pixels
 //!   ch1  framebuffer   a plane of pixels: addressing, clearing, saving
+//!   ch2  scissor       the pixels that a stage may emit
 //!   ch2  line          DDA: emits pixels through a callback
 //!   ch2  area          signed area, which side of an edge, winding
 //!   ch2  scanline      split, walk the edges, emit spans: coverage only, no color
@@ -81,7 +82,8 @@
 //!   ch9  merge         depth test, blending, rounding, writing
 //!   ch9  state         RenderState: the options of all stages
 //!   ch9  probe         what the pipeline reports on the way to a pixel
-//!   ch9  raster        the door of all rasterizers; the book's scanline rasterizer
+//!   ch9  fragment      what is done with a fragment: shading, merging, reporting
+//!   ch9  raster        the trait of all rasterizers; the book's scanline rasterizer
 //!   ch9  pipeline      draw(): the stages in their order
 //!   ch9  swap_chain    front and back buffer, present
 //!   ch10 light         ambient, Lambert, Phong, Blinn–Phong, normal maps
@@ -90,16 +92,16 @@
 //!   ch11 model         models (OBJ) from files, with the normals that they lack
 //!   more save          pictures into image files
 //!   more srgb          what the numbers of a picture mean as light
-//!   more exact         the exact rasterizer: edge functions, the top-left rule, several samples in a pixel
+//!   more exact         the exact rasterizer; (ch2, 3, 5) edge functions, the top-left rule, several samples in a pixel
 //!   more tiled         the fast rasterizer: the same picture by tiles, lanes and threads
 //!   …    figure        a chapter's table, the canvas, pictures made of pictures, assets
 //!   …    inspect       the history of a pixel, steps, overdraw
 //!   …    program       what the eleven `main`s share; nothing above imports it
 //! ```
 //!
-//! Beside the data flow are three small rooms that no chapter speaks of: `observer`, for those who watch how a picture
-//! comes about; `scissor`, the pixels that a stage may emit; `plane`, the memory of a picture. A room imports only rooms
-//! that stand above it, so that a reader who takes them in this order meets nothing that is explained later.
+//! Beside the data flow are `observer`, for those who watch how a picture comes about, and `plane`, its memory. They can
+//! be skipped at first. A room imports only rooms above it: a reader who takes them in this order meets nothing that is
+//! explained later.
 //!
 //! Data flows one way. A stage hands its results to the next through a callback, so that an early chapter can call
 //! a stage by itself. Coverage (which pixels), interpolation (which values) and writing (which colors) are three rooms.
@@ -122,9 +124,9 @@
 pub mod color;
 pub mod rect;
 pub mod observer;
-pub mod scissor;
 mod plane;
 pub mod framebuffer;
+pub mod scissor;
 pub mod line;
 pub mod area;
 pub mod scanline;

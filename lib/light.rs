@@ -1,4 +1,4 @@
-//! Chapter 11: light. How bright a surface is at a point, from its normal, the direction to the light, and the eye.
+//! Chapters 10 and 11: light. How bright a surface is at a point, from its normal, the direction to the light, and the eye.
 //!
 //! Called by fragment shaders (or, for Gouraud shading, by vertex shaders); all vectors are of length 1 and in one
 //! space, whichever that is. Everything is written for any number type.

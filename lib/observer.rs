@@ -1,7 +1,7 @@
 //! Beside the data flow: somebody who watches how a picture comes about.
 //!
 //! A framebuffer can carry an [`Observer`]; the framebuffer itself reports to it, and so do the stages that draw into it.
-//! All methods do nothing unless they are written anew. Nothing that an observer does changes a picture. The pipeline of
+//! All methods do nothing by default. Nothing that an observer does changes a picture. The pipeline of
 //! chapter 9 reports more: see [`probe`](crate::probe).
 //!
 //! A stage announces what it is about to do with a value of its own type, such as [`line::Line`](crate::line::Line).
@@ -51,7 +51,8 @@ pub trait Observer: Debug {
     /// What follows happens on a screen of its own, each pixel of which is shown as `factor` × `factor` pixels.
     fn enlarged(&self, _factor: u32) {}
 
-    /// A stage begins with something: a value of the stage's own type.
+    /// A stage begins with something: a value of the stage's own type. What emits pixels says when it is [done](Self::done);
+    /// a triangle that is [clipped](crate::clip::Assembled) is followed by its pieces instead.
     fn begun(&self, _what: &dyn Any) {}
 
     /// What was begun last is done.

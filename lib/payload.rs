@@ -7,20 +7,48 @@
 //! ```
 //! use glam::dvec2;
 //! use rasterbook::Rect;
-//! use rasterbook::payload::Payload;
-//! use rasterbook::scanline::{StepLimit, Walk, spans};
+//! use rasterbook::payload::StepLimit;
+//! use rasterbook::scanline::{EdgeWalk, spans};
 //!
 //! // Along a row of five pixels from 0 to 1.
 //! let triangle = [dvec2(0.0, 0.0), dvec2(4.0, 0.0), dvec2(0.0, 1.0)];
 //! let mut values = Vec::new();
-//! spans(triangle, Walk::default(), Rect::sized(8, 8), |span| {
+//! spans(triangle, EdgeWalk::Clamped, Rect::sized(8, 8), |span| {
 //!     span.step(0.0, 1.0, StepLimit::Edges, |_, value| values.push(value));
 //! });
 //! assert_eq!(values, [0.0, 0.25, 0.5, 0.75, 1.0]);
 //! ```
 
 use crate::rect::Rect;
-use crate::scanline::{Edge, Half, Span, Split, StepLimit, Walk, halves};
+use crate::scanline::{Edge, EdgeWalk, Half, Span, Split, halves};
+
+/// Whether a payload may pass the value that it has at the end of what it is stepped along.
+///
+/// A row stands for the height trunc(y), an edge ends at its own height: the last step may go beyond it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum StepLimit {
+    /// Nothing is clamped, a mistake.
+    ///
+    /// - Cause: the last row of an edge lies up to one pixel beyond the edge's end, and so does the last pixel of a row.
+    /// - Artefact: values outside the range of the vertices; in a texture, texels from beyond the triangle ("spikes").
+    /// - Remedy: [`StepLimit::Edges`] as in the book (chapter 11), or [`StepLimit::Everywhere`].
+    Overrun,
+    /// Clamped along the two sides after each row, not along the row: the book's remedy. The last pixel of a row may
+    /// still pass the end, and a depth that is stepped beside t is not clamped.
+    #[default]
+    Edges,
+    /// Clamped along the sides and along the row, depth included: nothing leaves the range of the vertices.
+    Everywhere,
+}
+
+/// The options of the walk.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Walk {
+    /// Whether x is kept between the ends of its edge.
+    pub edges: EdgeWalk,
+    /// Whether a payload is kept between its values at the ends.
+    pub limit: StepLimit,
+}
 
 /// Something that changes by equal steps from one end of an edge, or of a row, to the other.
 pub trait Payload: Copy {
@@ -90,8 +118,8 @@ impl Split {
     }
 }
 
+// ANCHOR: step
 impl Half {
-    // ANCHOR: step
     /// Walks up both sides of the half with a payload, and emits each span with the payload at its start and at its end.
     ///
     /// `carried` is the payload at the ends of the half's edges. Source: book, section 3.2.4.
@@ -111,7 +139,6 @@ impl Half {
             emit(span, [left.value, right.value]);
         });
     }
-    // ANCHOR_END: step
 }
 
 /// A payload on its way up one side of a half.
@@ -143,6 +170,8 @@ impl<P: Payload> Stepped<P> {
         }
     }
 }
+
+// ANCHOR_END: step
 
 impl Span {
     // ANCHOR: span_step

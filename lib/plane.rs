@@ -1,4 +1,4 @@
-//! Ground: a value for each pixel of a picture, in memory. Colors and depths are kept in such planes.
+//! Beside the data flow: a value for each pixel of a picture, in memory. Colors and depths are kept in such planes.
 //!
 //! It reads as a slice. A stage that writes many pixels at a time can leave a memo with it, which is kept until a value
 //! changes: what is known of the values need not be found out again.
@@ -17,7 +17,7 @@ pub(crate) struct PixelPlane<T> {
 #[cfg(feature = "tiled")]
 #[derive(Debug, Default)]
 struct Memo {
-    text: Option<Box<dyn std::any::Any + Send + Sync>>,
+    value: Option<Box<dyn std::any::Any + Send + Sync>>,
     /// Whether no value has changed since. A write clears this flag, and does no more.
     is_valid: bool,
 }
@@ -69,13 +69,13 @@ impl<T> DerefMut for PixelPlane<T> {
 impl<T> PixelPlane<T> {
     /// Takes the memo out, if one of this type was left and no value has changed since.
     pub(crate) fn take_memo<M: 'static>(&mut self) -> Option<Box<M>> {
-        let Memo { text, is_valid } = std::mem::take(&mut self.memo);
-        text.filter(|_| is_valid)?.downcast().ok()
+        let Memo { value, is_valid } = std::mem::take(&mut self.memo);
+        value.filter(|_| is_valid)?.downcast().ok()
     }
 
     /// Leaves a memo about the values as they are now.
     pub(crate) fn leave_memo<M: Send + Sync + 'static>(&mut self, memo: Box<M>) {
-        self.memo = Memo { text: Some(memo), is_valid: true };
+        self.memo = Memo { value: Some(memo), is_valid: true };
     }
 }
 

@@ -4,6 +4,10 @@
 //! too. It is a parameter of [`draw`](crate::draw): with [`Silent`], nothing is left of the calls. What is reported
 //! is made only if it is wanted, hence the functions.
 //!
+//! What is written, tested and begun is reported to the target's own observer: see [`Target::set_observer`].
+//!
+//! [`Target::set_observer`]: crate::Target::set_observer
+//!
 //! ```
 //! use std::cell::Cell;
 //! use rasterbook::observer::Observer;

@@ -1,4 +1,4 @@
-//! Chapter 9: the door that every rasterizer stands behind, and the first of them.
+//! Chapter 9: the trait of all rasterizers, and the first of them.
 //!
 //! A rasterizer takes a stream of triangles in NDC, the state, a shader, a target and a probe. What happens inside
 //! (culling, viewport, coverage, interpolation, shading, merging) is its own business: that is where rasterizers
@@ -6,14 +6,9 @@
 //!
 //! ```
 //! use glam::{DVec3, dvec3};
-//! use rasterbook::Color;
-//! use rasterbook::clip::{ClipVertex, NdcVertex};
-//! use rasterbook::Target;
-//! use rasterbook::RenderState;
-//! use rasterbook::probe::Silent;
-//! use rasterbook::raster::{Rasterizer, Scanline};
-//! use rasterbook::real::Real;
-//! use rasterbook::shader::{Shaded, Shader};
+//! use rasterbook::clip::NdcVertex;
+//! use rasterbook::raster::Rasterizer;
+//! use rasterbook::{ClipVertex, Color, Real, RenderState, Scanline, Shaded, Shader, Silent, Target};
 //!
 //! struct Green;
 //!

@@ -13,6 +13,9 @@
 use std::ops::Range;
 
 /// A pixel: its column, counted from the left, and its row, counted from the bottom.
+///
+/// Functions of a single pixel, such as [`Framebuffer::set`](crate::Framebuffer::set), and callbacks that emit pixels take
+/// x and y by themselves, as the book does; where a pixel is kept or passed on, it is this pair.
 pub type Pixel = (i32, i32);
 
 /// A rectangle of pixels, half-open: `left ≤ x < right`, `bottom ≤ y < top`.

@@ -5,12 +5,12 @@
 //!
 //! ```
 //! use glam::dvec2;
-//! use rasterbook::scanline::{Walk, spans};
+//! use rasterbook::scanline::{EdgeWalk, spans};
 //! use rasterbook::Rect;
 //!
 //! let triangle = [dvec2(0.0, 0.0), dvec2(0.0, 4.0), dvec2(4.0, 0.0)];
 //! let mut pixels = 0;
-//! spans(triangle, Walk::default(), Rect::sized(8, 8), |span| pixels += span.columns().len());
+//! spans(triangle, EdgeWalk::Clamped, Rect::sized(8, 8), |span| pixels += span.columns().len());
 //! assert_eq!(pixels, 5 + 4 + 3 + 2);
 //! ```
 
@@ -36,43 +36,15 @@ pub enum EdgeWalk {
     Unclamped,
 }
 
-/// From chapter 3 on: whether a payload may pass the value that it has at the end of what it is stepped along.
-///
-/// A row stands for the height trunc(y), an edge ends at its own height: the last step may go beyond it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum StepLimit {
-    /// Nothing is clamped, a mistake.
-    ///
-    /// - Cause: the last row of an edge lies up to one pixel beyond the edge's end, and so does the last pixel of a row.
-    /// - Artefact: values outside the range of the vertices; in a texture, texels from beyond the triangle ("spikes").
-    /// - Remedy: [`StepLimit::Edges`] as in the book (chapter 11), or [`StepLimit::Everywhere`].
-    Overrun,
-    /// Clamped along the two sides after each row, not along the row: the book's remedy. The last pixel of a row may
-    /// still pass the end, and a depth that is stepped beside t is not clamped.
-    #[default]
-    Edges,
-    /// Clamped along the sides and along the row, depth included: nothing leaves the range of the vertices.
-    Everywhere,
-}
-
-/// The options of the walk.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Walk {
-    /// Whether x is kept between the ends of its edge.
-    pub edges: EdgeWalk,
-    /// Whether a payload is kept between its values at the ends.
-    pub limit: StepLimit,
-}
-
 // ANCHOR: spans
 /// Emits the spans of a triangle, those of the lower half first. Screen space, in pixels, y up.
 ///
 /// Nothing for a triangle without area or with coordinates that are not finite. Source: book, section 2.2.
-pub fn spans(triangle: [DVec2; 3], walk: Walk, scissor: impl Into<Scissor>, mut emit: impl FnMut(Span)) {
+pub fn spans(triangle: [DVec2; 3], edges: EdgeWalk, scissor: impl Into<Scissor>, mut emit: impl FnMut(Span)) {
     let scissor = scissor.into();
     if let Some(Split { lower, upper, .. }) = split(triangle) {
-        lower.spans(walk, scissor.clone(), &mut emit);
-        upper.spans(walk, scissor, &mut emit);
+        lower.spans(edges, scissor.clone(), &mut emit);
+        upper.spans(edges, scissor, &mut emit);
     }
 }
 // ANCHOR_END: spans
@@ -147,6 +119,7 @@ pub fn split(triangle: [DVec2; 3]) -> Option<Split> {
     let [lower, upper] = halves(p1, left, right, p3);
     Some(Split { lower, upper, order, t, is_middle_right })
 }
+// ANCHOR_END: split
 
 /// The lower half ends where the upper one starts.
 #[inline]
@@ -156,7 +129,6 @@ pub(crate) fn halves<T: Copy>(low: T, left: T, right: T, high: T) -> [Half<T>; 2
         Half { left: Edge { start: left, end: high }, right: Edge { start: right, end: high } },
     ]
 }
-// ANCHOR_END: split
 
 /// The numbers of the vertices from bottom to top; those of equal height keep their order.
 #[inline]
@@ -175,16 +147,16 @@ fn by_height(triangle: [DVec2; 3]) -> [usize; 3] {
 pub struct HalfFill {
     /// The half.
     pub half: Half,
-    /// How its rows are walked.
-    pub walk: Walk,
+    /// Whether x is kept between the ends of its edge.
+    pub edges: EdgeWalk,
 }
 
 impl Half {
     /// Emits the spans of the half, from bottom to top.
-    pub fn spans(&self, walk: Walk, scissor: impl Into<Scissor>, emit: impl FnMut(Span)) {
+    pub fn spans(&self, edges: EdgeWalk, scissor: impl Into<Scissor>, emit: impl FnMut(Span)) {
         let scissor = scissor.into();
-        scissor.report(|observer| observer.begun(&HalfFill { half: *self, walk }));
-        self.walk(walk.edges, scissor.rect, emit);
+        scissor.report(|observer| observer.begun(&HalfFill { half: *self, edges }));
+        self.walk(edges, scissor.rect, emit);
         scissor.report(|observer| observer.done());
     }
 
@@ -295,9 +267,9 @@ pub(crate) mod tests {
         counts.iter().rev().map(|row| row.iter().map(digit).collect::<String>() + "\n").collect()
     }
 
-    fn drawn(corners: [(f64, f64); 3], walk: Walk) -> String {
+    fn drawn(corners: [(f64, f64); 3], edges: EdgeWalk) -> String {
         let mut counts = [[0; 12]; 7];
-        spans(corners.map(DVec2::from), walk, Rect::sized(12, 7), |span| {
+        spans(corners.map(DVec2::from), edges, Rect::sized(12, 7), |span| {
             for x in span.columns() {
                 counts[span.y as usize][x as usize] += 1;
             }
@@ -315,7 +287,7 @@ pub(crate) mod tests {
             1111........\n\
             11111.......\n\
             111111......\n";
-        assert_eq!(drawn([(0.0, 0.0), (5.0, 0.0), (0.0, 5.0)], Walk::default()), expected);
+        assert_eq!(drawn([(0.0, 0.0), (5.0, 0.0), (0.0, 5.0)], EdgeWalk::Clamped), expected);
     }
 
     #[test]
@@ -329,7 +301,7 @@ pub(crate) mod tests {
             ...11111....\n\
             .....111....\n\
             ........1...\n";
-        assert_eq!(drawn([(8.0, 0.0), (1.0, 3.0), (5.0, 6.0)], Walk::default()), expected);
+        assert_eq!(drawn([(8.0, 0.0), (1.0, 3.0), (5.0, 6.0)], EdgeWalk::Clamped), expected);
     }
 
     #[test]
@@ -353,8 +325,8 @@ pub(crate) mod tests {
             111222221111\n\
             .....1......\n\
             ............\n";
-        assert_eq!(drawn(corners, Walk::default()), clamped);
-        assert_eq!(drawn(corners, Walk { edges: EdgeWalk::Unclamped, ..Walk::default() }), unclamped);
+        assert_eq!(drawn(corners, EdgeWalk::Clamped), clamped);
+        assert_eq!(drawn(corners, EdgeWalk::Unclamped), unclamped);
     }
 
     #[test]
@@ -368,7 +340,7 @@ pub(crate) mod tests {
             [(1.0, -inf), (5.0, 1.0), (1.0, 5.0)],
             [(f64::MAX, f64::MAX), (-f64::MAX, 1.0), (1.0, -f64::MAX)],
         ] {
-            assert!(!drawn(corners, Walk::default()).contains('1'), "{corners:?}");
+            assert!(!drawn(corners, EdgeWalk::Clamped).contains('1'), "{corners:?}");
         }
     }
 
@@ -378,7 +350,7 @@ pub(crate) mod tests {
         let mut rows = 0;
         spans(
             [dvec2(-far, -far), dvec2(far, -far), dvec2(0.0, far)],
-            Walk::default(),
+            EdgeWalk::Clamped,
             Rect::sized(1, 1),
             |span| {
                 rows += 1;
@@ -397,7 +369,7 @@ pub(crate) mod tests {
         fn spans_stay_inside_the_bounding_box_and_the_scissor(a in point(), b in point(), c in point()) {
             let (low, high) = (a.min(b).min(c), a.max(b).max(c));
             let scissor = Rect::sized(40, 30);
-            spans([a, b, c], Walk::default(), scissor, |span| {
+            spans([a, b, c], EdgeWalk::Clamped, scissor, |span| {
                 assert!(scissor.rows().contains(&span.y));
                 assert!(f64::from(span.y) >= low.y.trunc() && f64::from(span.y) < high.y);
                 for x in span.columns() {

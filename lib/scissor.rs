@@ -13,6 +13,7 @@
 //! assert_eq!(part.rect, Rect { left: 2, bottom: 2, right: 8, top: 4 });
 //! ```
 
+use crate::framebuffer::Framebuffer;
 use crate::observer::{Observer, SharedObserver};
 use crate::rect::Rect;
 
@@ -28,6 +29,14 @@ pub struct Scissor {
 impl From<Rect> for Scissor {
     fn from(rect: Rect) -> Self {
         Self { rect, observer: None }
+    }
+}
+
+impl Framebuffer {
+    /// All pixels, as the scissor that the drawing stages take.
+    #[must_use]
+    pub fn scissor(&self) -> Scissor {
+        Scissor { rect: self.rect(), observer: self.observer() }
     }
 }
 

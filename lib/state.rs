@@ -10,15 +10,15 @@ use crate::cull::CullMode;
 use crate::depth::DepthEncoding;
 use crate::interpolate::Interpolation;
 use crate::merge::Merge;
+use crate::payload::Walk;
 use crate::real::Scalar;
 use crate::rect::Rect;
-use crate::scanline::Walk;
 use crate::target::Target;
 use crate::transform::Viewport;
 
 /// What is in the target when drawing begins.
 ///
-/// A rasterizer that draws a part of the picture at a time, as GPUs with tiles and [`tiled`](crate::tiled) do, can clear
+/// A rasterizer that draws a part of the picture at a time, as GPUs with tiles and `tiled` do, can clear
 /// it just before: then it need not be fetched from far away. Source: Vulkan specification, *Load operations*.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LoadOp {

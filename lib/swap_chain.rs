@@ -40,8 +40,8 @@ impl SwapChain {
         &self.front
     }
 
-    /// Shows the finished picture in the back buffer. The two change places, which takes no time; the back buffer then
-    /// holds the picture before, and wants to be cleared.
+    /// Shows the finished picture in the back buffer. The two are exchanged, which takes no time; the back buffer then
+    /// holds the picture before, and must be cleared.
     pub const fn present(&mut self, back: &mut Framebuffer) {
         self.front.swap_pictures(back);
     }

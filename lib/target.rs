@@ -18,8 +18,9 @@ use crate::color::Color;
 use crate::depth::{DepthBuffer, DepthTest};
 use crate::framebuffer::Framebuffer;
 use crate::interpolate::{Interpolation, Projected, ScreenVertex, step_parameter_and_depth};
+use crate::observer::SharedObserver;
+use crate::payload::Walk;
 use crate::real::Scalar;
-use crate::scanline::Walk;
 
 /// What is drawn into: a plane of colors and a plane of depths, of the precision in which the rasterizer computes.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,9 +45,14 @@ impl<D: Scalar> Target<D> {
     #[must_use]
     pub fn like(framebuffer: &Framebuffer) -> Self {
         let mut target = Self::sized(framebuffer.width(), framebuffer.height());
-        target.color.set_observer(framebuffer.observer());
-        target.depth.set_observer(framebuffer.observer());
+        target.set_observer(framebuffer.observer());
         target
+    }
+
+    /// From now on this one observes both planes, and no other.
+    pub fn set_observer(&mut self, observer: Option<SharedObserver>) {
+        self.color.set_observer(observer.clone());
+        self.depth.set_observer(observer);
     }
 
     /// Gives all pixels a color and a depth: what the last frame has left must not stay. Book, section 9.4.1.

@@ -1,14 +1,16 @@
-//! Beyond the book: interpolation by weights, corrected by ω, for rasterizers that know where in a triangle they are.
+//! Chapter 9, beyond the book: interpolation by weights, corrected by ω, for rasterizers that know where in a triangle they are.
 //!
 //! Chapter 3 finds weights by areas, chapter 5 corrects a parameter along a row; here the weights themselves are
-//! corrected. Takes what the corners of a triangle carry and weights on the screen; gives varyings, the depth, and how
+//! corrected. Takes what the vertices of a triangle carry and weights on the screen; gives varyings, the depth, and how
 //! the varyings change from pixel to pixel.
 //!
 //! ```
-//! use rasterbook::varyings::perspective_weights;
+//! use glam::dvec2;
+//! use rasterbook::varyings::weight_gradients;
 //!
-//! // Half-way on the screen between a near point (ω = 1) and a far one (ω = 3) is a quarter of the way in space.
-//! assert_eq!(perspective_weights([0.5, 0.5, 0.0], [1.0, 3.0, 1.0]), [0.75, 0.25, 0.0]);
+//! // The weight of the second vertex grows by a quarter a pixel to the right, that of the third by an eighth upwards.
+//! let gradients = weight_gradients::<f64>([dvec2(1.0, 1.0), dvec2(5.0, 1.0), dvec2(1.0, 9.0)]);
+//! assert_eq!(gradients, [[0.25, 0.0], [0.0, 0.125]]);
 //! ```
 
 use std::array::from_fn;
@@ -18,29 +20,7 @@ use glam::DVec2;
 use crate::area::twice_signed_area;
 use crate::clip::NdcVertex;
 use crate::interpolate::{Interpolation, Projected};
-use crate::real::{Mask, Real};
-
-// ANCHOR: perspective_weights
-/// The weights of three points in space, from their weights on the screen.
-///
-/// ```text
-///             α′/ωa                                  1     α′   β′   γ′
-///     α = ───────────────────────     and with it   ── =  ── + ── + ──
-///         α′/ωa + β′/ωb + γ′/ωc                      ω     ωa   ωb   ωc
-/// ```
-///
-/// Where all ω are equal, as under an orthographic projection, nothing changes. Where that cannot be computed, because
-/// an ω or the sum below the line is zero, the weights stay as they are. Source: first note, formulas 4 to 7.
-#[must_use]
-pub fn perspective_weights<R: Real>(weights: [R; 3], w: [R; 3]) -> [R; 3] {
-    let zero = R::of(0.0);
-    let is_nonzero = |x: R| x.is_less(zero).not().and(zero.is_less(x).not()).not();
-    let parts: [R; 3] = from_fn(|i| weights[i] / w[i]);
-    let sum = parts[0] + parts[1] + parts[2];
-    let is_possible = w.into_iter().fold(is_nonzero(sum), |mask, w| mask.and(is_nonzero(w)));
-    from_fn(|i| R::select(is_possible, parts[i] / sum, weights[i]))
-}
-// ANCHOR_END: perspective_weights
+use crate::real::Real;
 
 /// How varyings change from one pixel to the next: to the right, and upwards.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,7 +31,7 @@ pub struct Derivatives<R, const N: usize> {
     pub dy: [R; N],
 }
 
-/// How the weights of the second and the third corner change per pixel, to the right and upwards.
+/// How the weights of the second and the third vertex change per pixel, to the right and upwards.
 pub type WeightGradients<R> = [[R; 2]; 2];
 
 /// The gradients of the weights in a triangle on the screen, in pixels.
@@ -63,7 +43,7 @@ pub fn weight_gradients<R: Real>([a, b, c]: [DVec2; 3]) -> WeightGradients<R> {
 }
 
 // ANCHOR: triangle_varyings
-/// What changes linearly on the screen: what a corner carries, divided by ω; the same at a point between corners; or how
+/// What changes linearly on the screen: what a vertex carries, divided by ω; the same at a point between vertices; or how
 /// much all of it changes from there to another point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinearVaryings<R, const N: usize> {
@@ -136,7 +116,7 @@ impl<R: Real, const N: usize> LinearVaryings<R, N> {
     }
 }
 
-/// What the corners of a triangle carry, made ready for weights: its value at the first, and the ways to the other two.
+/// What the vertices of a triangle carry, made ready for weights: its value at the first, and the differences to the other two.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TriangleVaryings<R, const N: usize> {
     first: LinearVaryings<R, N>,
@@ -149,28 +129,28 @@ impl<R: Real, const N: usize> TriangleVaryings<R, N> {
     /// From the three vertices of a triangle.
     #[must_use]
     #[inline]
-    pub fn new(corners: &[NdcVertex<N>; 3], interpolation: Interpolation) -> Self {
+    pub fn new(vertices: &[NdcVertex<N>; 3], interpolation: Interpolation) -> Self {
         let [first, second, third] =
-            corners.each_ref().map(|vertex| LinearVaryings::new(vertex, interpolation));
-        let way = |corner: LinearVaryings<R, N>| corner.with(&first, |corner, first| corner - first);
-        Self { first, to_second: way(second), to_third: way(third), interpolation }
+            vertices.each_ref().map(|vertex| LinearVaryings::new(vertex, interpolation));
+        let difference = |vertex: LinearVaryings<R, N>| vertex.with(&first, |vertex, first| vertex - first);
+        Self { first, to_second: difference(second), to_third: difference(third), interpolation }
     }
 
-    /// What changes linearly, where the second and the third corner have these weights.
+    /// What changes linearly, where the second and the third vertex have these weights.
     #[must_use]
     #[inline]
     pub fn linear_at(&self, [second, third]: [R; 2]) -> LinearVaryings<R, N> {
         self.first.moved(&self.to_second, second).moved(&self.to_third, third)
     }
 
-    /// How much it changes where the weights of the second and the third corner change by so much.
+    /// How much it changes where the weights of the second and the third vertex change by so much.
     #[must_use]
     #[inline]
     pub fn change(&self, [second, third]: [R; 2]) -> LinearVaryings<R, N> {
         self.to_second.with(&self.to_third, |to_second, to_third| to_second * second + to_third * third)
     }
 
-    /// ω and the varyings where the second and the third corner have these weights.
+    /// ω and the varyings where the second and the third vertex have these weights.
     #[must_use]
     #[inline]
     pub fn at(&self, weights: [R; 2]) -> Projected<R, N> {
@@ -190,6 +170,7 @@ impl<R: Real, const N: usize> TriangleVaryings<R, N> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::interpolate::perspective_weights;
     use glam::dvec3;
     use proptest::prelude::*;
 
@@ -200,7 +181,7 @@ mod tests {
         })
     }
 
-    fn corners(w: [f64; 3], values: [f64; 3]) -> [NdcVertex<1>; 3] {
+    fn vertices(w: [f64; 3], values: [f64; 3]) -> [NdcVertex<1>; 3] {
         from_fn(|i| NdcVertex { position: dvec3(0.0, 0.0, w[i]), w: w[i], varyings: [values[i]] })
     }
 
@@ -232,7 +213,7 @@ mod tests {
         fn both_ways_to_a_value_agree(weights in weights(), w in prop::array::uniform3(0.1..10.0), v in prop::array::uniform3(-5.0..5.0)) {
             let corrected = perspective_weights(weights, w);
             let by_weights: f64 = (0..3).map(|i| corrected[i] * v[i]).sum();
-            let varyings = TriangleVaryings::<f64, 1>::new(&corners(w, v), Interpolation::PerspectiveCorrect);
+            let varyings = TriangleVaryings::<f64, 1>::new(&vertices(w, v), Interpolation::PerspectiveCorrect);
             let point = varyings.at([weights[1], weights[2]]);
             prop_assert!((point.values[0] - by_weights).abs() < 1e-11);
             let one_over_w: f64 = (0..3).map(|i| weights[i] / w[i]).sum();
@@ -246,7 +227,7 @@ mod tests {
         ) {
             const STEP: f64 = 1e-6;
             let interpolation = if affine { Interpolation::Affine } else { Interpolation::PerspectiveCorrect };
-            let varyings = TriangleVaryings::<f64, 1>::new(&corners(w, v), interpolation);
+            let varyings = TriangleVaryings::<f64, 1>::new(&vertices(w, v), interpolation);
             let gradients = [[0.3, -0.1], [-0.2, 0.4]];
             let at = |steps: [f64; 2]| {
                 varyings.at(from_fn(|k| weights[k + 1] + gradients[0][k] * steps[0] + gradients[1][k] * steps[1]))

@@ -11,9 +11,9 @@ use rasterbook::interpolate::{Interpolation, Projected, ScreenVertex, step_value
 use rasterbook::line::{StepAxis, dda};
 use rasterbook::merge::Merge;
 use rasterbook::observer::Observer;
-use rasterbook::payload::Payload;
+use rasterbook::payload::{Payload, StepLimit, Walk};
 use rasterbook::probe::{Fragment, Piece, Probe};
-use rasterbook::scanline::{self, EdgeWalk, StepLimit, Walk};
+use rasterbook::scanline::{self, EdgeWalk};
 use rasterbook::texture::AddressMode;
 use rasterbook::transform::{Frustum, perspective, perspective_divide};
 use rasterbook::{
@@ -25,7 +25,7 @@ const SCISSOR: Rect = Rect::sized(400, 400);
 /// The spans of a triangle: row, first column, column after the last.
 fn spans(triangle: [(f64, f64); 3]) -> Vec<(i32, i32, i32)> {
     let mut spans = Vec::new();
-    scanline::spans(triangle.map(DVec2::from), Walk::default(), SCISSOR, |span| {
+    scanline::spans(triangle.map(DVec2::from), EdgeWalk::Clamped, SCISSOR, |span| {
         spans.push((span.y, span.columns().start, span.columns().end));
     });
     spans

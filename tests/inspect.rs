@@ -1,12 +1,12 @@
-//! The histories of pixels: what is told is what stands in the picture, and its numbers are those of the formulas.
+//! The histories of pixels: what is reported is what stands in the picture, and its numbers are those of the formulas.
 
 #[path = "support/chapters.rs"]
 mod chapters;
 
 use chapters::{CHAPTERS, variant};
-use rasterbook::Pixel;
 use rasterbook::figure::{DrawOptions, RasterizerChoice, Variant};
 use rasterbook::inspect::{History, histories, history};
+use rasterbook::{Color, Framebuffer, Pixel};
 use rayon::prelude::*;
 use serde_json::Value;
 
@@ -31,7 +31,7 @@ fn pixels((width, height): (u32, u32)) -> Vec<Pixel> {
 }
 
 #[test]
-fn what_is_told_is_what_stands_in_the_picture() {
+fn what_is_reported_is_what_stands_in_the_picture_and_no_event_is_unknown() {
     let rows: Vec<(&str, &Variant)> = CHAPTERS
         .iter()
         .flat_map(|(chapter, _)| chapter.variants.iter().map(|variant| (chapter.name, variant)))
@@ -50,6 +50,21 @@ fn what_is_told_is_what_stands_in_the_picture() {
     });
 }
 
+#[test]
+fn an_event_of_another_stage_is_called_unknown() {
+    #[derive(Debug)]
+    struct Elsewhere;
+    fn draw(framebuffer: &mut Framebuffer) {
+        let observer = framebuffer.observer().expect("it is observed");
+        observer.begun(&Elsewhere);
+        framebuffer.set(1, 1, Color::RED);
+        observer.done();
+    }
+    let variant = Variant::new("elsewhere", draw, "").size(4, 4);
+    let history = history("ch00", &variant, &variant.options(None), (1, 1));
+    assert_eq!(json(&history)["events"][0]["kind"], "unknown", "{history}");
+}
+
 fn check(history: &History, variant: &Variant) {
     let text = history.to_string();
     let json: Value = serde_json::from_str(&history.to_json()).expect("JSON");
@@ -61,7 +76,7 @@ fn check(history: &History, variant: &Variant) {
     }
     assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
     assert!(!events.is_empty(), "{text}");
-    // The recorder knows every event that any stage sends.
+    // The recorder knows every event that a stage sends.
     assert!(!events.iter().any(|event| event["kind"] == "unknown"), "{text}");
     // Something covers a pixel, or it is said that nothing does.
     let covers = |event: &Value| {
@@ -80,7 +95,7 @@ fn json(history: &History) -> Value {
 }
 
 #[test]
-fn the_formula_gives_what_is_told() {
+fn the_formula_gives_what_is_reported() {
     for (name, x, y) in [("correct", 60, 120), ("correct", 80, 50), ("floor", 300, 100), ("affine", 60, 120)]
     {
         let variant = variant("ch05_perspective_correct", name);
@@ -104,7 +119,7 @@ fn the_formula_gives_what_is_told() {
 }
 
 #[test]
-fn weights_of_the_exact_rasterizer_give_what_is_told() {
+fn weights_of_the_exact_rasterizer_give_what_is_reported() {
     let variant = variant("ch10_matrices_lighting", "exact");
     let json = json(&of("ch10_matrices_lighting", variant, (320, 240)));
     let triangle = &json["events"][1]["hits"][0];

@@ -13,9 +13,9 @@ use rasterbook::interpolate::Interpolation;
 use rasterbook::merge::{Merge, Verdict};
 use rasterbook::model::{Model, ModelVertex};
 use rasterbook::observer::Observer;
+use rasterbook::payload::{StepLimit, Walk};
 use rasterbook::probe::{Fragment, Piece, Probe};
 use rasterbook::raster::Rasterizer;
-use rasterbook::scanline::{StepLimit, Walk};
 use rasterbook::transform::{Frustum, Viewport, about, rotate_x_to_y, rotate_z_to_y};
 use rasterbook::{
     ClipVertex, Color, Framebuffer, LoadOp, Mesh, Pixel, Real, Rect, RenderState, Scanline, Shaded, Shader,

@@ -3,7 +3,7 @@
 use glam::DVec2;
 use rasterbook::exact::edge::Coverage;
 use rasterbook::figure::picture;
-use rasterbook::scanline::{Walk, spans};
+use rasterbook::scanline::{EdgeWalk, spans};
 use rasterbook::scissor::Scissor;
 use rasterbook::{Color, Framebuffer};
 
@@ -56,7 +56,7 @@ fn one_more(color: Color) -> Color {
 /// The hexagon by rows.
 pub(super) fn shared_edge(framebuffer: &mut Framebuffer) {
     hexagon(framebuffer, |triangle, scissor, emit| {
-        spans(triangle, Walk::default(), scissor, |span| span.columns().for_each(|x| emit(x, span.y)));
+        spans(triangle, EdgeWalk::Clamped, scissor, |span| span.columns().for_each(|x| emit(x, span.y)));
     });
 }
 // ANCHOR_END: shared_edge

@@ -4,8 +4,8 @@
 //! split it at its middle vertex, walk up the two sides of each half, and fill what lies between them.
 //!
 //! New here: signed area (`lib/area.rs`) and the scanline walk (`lib/scanline.rs`), which emits spans and knows no
-//! color. Beyond the book: edge functions (`lib/edge.rs`), which ask for each pixel whether it is inside, and several
-//! samples in a pixel (`lib/antialias.rs`). The figures: `scanlines.rs`, `edges.rs`, `samples.rs`. Book: section 2.2.
+//! color. Beyond the book: edge functions (`lib/exact/edge.rs`), which ask for each pixel whether it is inside, and several
+//! samples in a pixel (`lib/exact/samples.rs`). The figures: `scanlines.rs`, `edges.rs`, `samples.rs`. Book: section 2.2.
 
 mod edges;
 mod samples;

@@ -87,7 +87,7 @@ fn scene(framebuffer: &mut Framebuffer, pattern: &Pattern, shading: Shading) {
         patches.push(Patch { vertices, paint: Paint::Plain(light) });
     }
     picture::draw_enlarged(framebuffer, (80, 60), 7, |screen| {
-        let mut samples = Samples::new(80, 60, pattern).with_observer(screen.observer());
+        let mut samples = Samples::like(screen, pattern);
         for patch in &patches {
             draw(&mut samples, patch, shading);
         }

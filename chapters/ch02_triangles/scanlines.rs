@@ -2,13 +2,13 @@
 
 use glam::{DVec2, DVec3, dvec2};
 use rasterbook::figure::Subject;
-use rasterbook::scanline::{EdgeWalk, Walk, spans, split};
+use rasterbook::scanline::{EdgeWalk, spans, split};
 use rasterbook::{Color, Framebuffer, Rect};
 
 // ANCHOR: fill
 /// Colors all pixels of a triangle.
-fn fill(framebuffer: &mut Framebuffer, triangle: [DVec2; 3], walk: Walk, color: Color) {
-    spans(triangle, walk, framebuffer.scissor(), |span| {
+fn fill(framebuffer: &mut Framebuffer, triangle: [DVec2; 3], edges: EdgeWalk, color: Color) {
+    spans(triangle, edges, framebuffer.scissor(), |span| {
         for x in span.columns() {
             framebuffer.set(x, span.y, color);
         }
@@ -24,7 +24,7 @@ pub(super) fn triangle(vertices: [(f64, f64); 3]) -> [DVec2; 3] {
 /// The book's triangle.
 pub(super) fn flat(framebuffer: &mut Framebuffer) {
     let triangle = triangle([(100.0, 0.0), (100.0, 300.0), (300.0, 0.0)]);
-    fill(framebuffer, triangle, Walk::default(), Color::RED);
+    fill(framebuffer, triangle, EdgeWalk::Clamped, Color::RED);
 }
 
 // ANCHOR: split_in_two
@@ -34,7 +34,7 @@ pub(super) fn split_in_two(framebuffer: &mut Framebuffer) {
     let split = split(triangle).expect("a triangle with area");
     let halves = [(split.lower, Color::rgb(230, 120, 40)), (split.upper, Color::rgb(50, 110, 210))];
     for (half, color) in halves {
-        half.spans(Walk::default(), framebuffer.scissor(), |span| {
+        half.spans(EdgeWalk::Clamped, framebuffer.scissor(), |span| {
             for x in span.columns() {
                 framebuffer.set(x, span.y, color);
             }
@@ -55,17 +55,17 @@ fn mark(framebuffer: &mut Framebuffer, point: DVec2, color: Color) {
 
 /// The tree with x free to leave its edges.
 pub(super) fn overshoot(framebuffer: &mut Framebuffer) {
-    tree(framebuffer, Walk { edges: EdgeWalk::Unclamped, ..Walk::default() });
+    tree(framebuffer, EdgeWalk::Unclamped);
 }
 
 /// The tree with x kept between the ends of its edges.
 pub(super) fn clamped(framebuffer: &mut Framebuffer) {
-    tree(framebuffer, Walk::default());
+    tree(framebuffer, EdgeWalk::Clamped);
 }
 
 // ANCHOR: tree
 /// A fir tree. Each layer's base is level but for two thousandths of a pixel, so that one step of y moves x by 30,000 to 100,000.
-fn tree(framebuffer: &mut Framebuffer, walk: Walk) {
+fn tree(framebuffer: &mut Framebuffer, edges: EdgeWalk) {
     for i in 0..6 {
         let layer = f64::from(i);
         let (base, half_width) = (60.0 + 36.0 * layer, 100.0 - 14.0 * layer);
@@ -76,7 +76,7 @@ fn tree(framebuffer: &mut Framebuffer, walk: Walk) {
             (160.0 + half_width, base + tilt),
             (160.0, base + 70.0),
         ]);
-        fill(framebuffer, triangle, walk, Color::rgb(20, 90 + 22 * i, 50));
+        fill(framebuffer, triangle, edges, Color::rgb(20, 90 + 22 * i, 50));
     }
 }
 // ANCHOR_END: tree
@@ -90,20 +90,20 @@ pub(super) fn facets(framebuffer: &mut Framebuffer, subject: &Subject) {
         triangles
             .extend(part.mesh.triangles().map(|triangle| triangle.map(|index| vertices[index].position)));
     }
-    triangles.sort_by(|a, b| farness(b).total_cmp(&farness(a)));
+    triangles.sort_by(|a, b| depth_sum(b).total_cmp(&depth_sum(a)));
 
     for [a, b, c] in triangles {
         // The part of a face's normal that points to us: the cosine of the angle at which we see it.
         let facing = -(c - a).cross(b - a).normalize_or_zero().z;
         if facing > 0.0 {
             let triangle = [a, b, c].map(|point| dvec2(240.0, 240.0) + point.truncate() * 135.0);
-            fill(framebuffer, triangle, Walk::default(), Color::gray((40.0 + 215.0 * facing) as u8));
+            fill(framebuffer, triangle, EdgeWalk::Clamped, Color::gray((40.0 + 215.0 * facing) as u8));
         }
     }
 }
 
 /// The distance of a triangle's middle, times three.
-fn farness(triangle: &[DVec3; 3]) -> f64 {
+fn depth_sum(triangle: &[DVec3; 3]) -> f64 {
     triangle.iter().map(|vertex| vertex.z).sum()
 }
 // ANCHOR_END: facets

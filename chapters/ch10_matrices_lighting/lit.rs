@@ -5,7 +5,7 @@ use rasterbook::cull::CullMode;
 use rasterbook::figure::{Canvas, Subject};
 use rasterbook::light::lambert;
 use rasterbook::model::ModelVertex;
-use rasterbook::scanline::{StepLimit, Walk};
+use rasterbook::payload::{StepLimit, Walk};
 use rasterbook::texture::{AddressMode, Texture};
 use rasterbook::transform::{Frustum, about, rotate_x_to_y, rotate_z_to_y};
 use rasterbook::{ClipVertex, Real, RenderState, Shaded, Shader};

@@ -1,7 +1,7 @@
 //! Beyond the book: edge functions. Which pixels a triangle covers is decided with whole numbers, and neighbors that
 //! share an edge cover every pixel along it exactly once.
 //!
-//! Takes triangles on the screen; gives the pixels that they cover, and how much each corner weighs there. A pixel is a
+//! Takes triangles on the screen; gives the pixels that they cover, and how much each vertex weighs there. A pixel is a
 //! square with its sample in the middle; three *edge functions* say on which side of each edge the sample lies. The
 //! [exact rasterizer](super) and the fast one stand on it.
 //!
@@ -41,7 +41,7 @@ pub const SUBPIXELS: i64 = 256;
 /// `f64` as well.
 pub(crate) const FARTHEST: f64 = 65_536.0;
 
-/// A place on the screen in 1/256 pixel, y up.
+/// A position on the screen in 1/256 pixel, y up.
 pub type Subpixel = [i64; 2];
 
 /// The center of the pixel (x, y).
@@ -51,7 +51,7 @@ pub fn center(x: i32, y: i32) -> Subpixel {
     [x, y].map(|i| i64::from(i) * SUBPIXELS + SUBPIXELS / 2)
 }
 
-/// Screen space, in pixels → the nearest place in 1/256 pixel; `None` if it is not finite or too far away.
+/// Screen space, in pixels → the nearest position in 1/256 pixel; `None` if it is not finite or too far away.
 #[must_use]
 #[inline]
 pub fn snap(position: DVec2) -> Option<Subpixel> {
@@ -179,8 +179,8 @@ impl Coverage {
     /// too far away.
     #[must_use]
     #[inline]
-    pub fn new(corners: [DVec2; 3]) -> Option<Self> {
-        Self::of([snap(corners[0])?, snap(corners[1])?, snap(corners[2])?])
+    pub fn new(triangle: [DVec2; 3]) -> Option<Self> {
+        Self::of([snap(triangle[0])?, snap(triangle[1])?, snap(triangle[2])?])
     }
 
     /// The same for vertices that are rounded already, and near enough.

@@ -1,7 +1,7 @@
 //! Beyond the book: the exact rasterizer. Which pixels a triangle covers is decided with whole numbers
 //! ([`edge`]).
 //!
-//! Takes triangles in NDC, as the scanline rasterizer does, and stands behind the same door.
+//! Takes triangles in NDC, as the scanline rasterizer does, and implements the same trait.
 //!
 //! # Contract
 //!

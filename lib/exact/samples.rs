@@ -80,10 +80,11 @@ impl<'a> Samples<'a> {
         }
     }
 
-    /// The same, with an observer, or none.
+    /// Samples for the picture of a framebuffer: of its size, and with the same observer.
     #[must_use]
-    pub fn with_observer(self, observer: Option<SharedObserver>) -> Self {
-        Self { observer, ..self }
+    pub fn like(framebuffer: &Framebuffer, pattern: &'a Pattern) -> Self {
+        let observer = framebuffer.observer();
+        Self { observer, ..Self::new(framebuffer.width(), framebuffer.height(), pattern) }
     }
 
     /// The pixels.
@@ -92,25 +93,30 @@ impl<'a> Samples<'a> {
         self.rect
     }
 
-    /// The samples of a pixel: numbers, and places on the screen.
+    /// The samples of a pixel: numbers, and positions on the screen.
     pub fn of_pixel(&self, x: i32, y: i32) -> impl Iterator<Item = (usize, Subpixel)> + use<'a> {
         let corner = [x, y].map(|i| i64::from(i) * SUBPIXELS);
         self.pattern.iter().map(move |offset| from_fn(|i| corner[i] + offset[i])).enumerate()
     }
 
-    // ANCHOR: sample
     /// Gives a sample of the pixel (x, y) a color, unless what it holds is nearer. Outside nothing happens.
     pub fn draw(&mut self, x: i32, y: i32, sample: usize, depth: f64, color: Color) {
         let Some(pixel) = self.rect.index(x, y) else { return };
         let index = pixel * self.pattern.len() + sample;
-        let stored = self.depths[index];
         if let Some(observer) = &self.observer {
+            let stored = self.depths[index];
             let passes = if depth <= stored { "drawn" } else { "hidden" };
             observer.note((x, y), &|| {
                 format!("sample {sample}: {depth:.4} against {stored:.4}, {color:?} {passes}")
             });
         }
-        if depth <= stored {
+        self.draw_at(index, depth, color);
+    }
+
+    // ANCHOR: sample
+    /// Gives a sample a color, unless what it holds is nearer.
+    fn draw_at(&mut self, index: usize, depth: f64, color: Color) {
+        if depth <= self.depths[index] {
             self.depths[index] = depth;
             self.colors[index] = color;
         }

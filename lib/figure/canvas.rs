@@ -1,4 +1,4 @@
-//! What the figures of the later chapters draw on: a target, and the pipeline laid into the middle of it.
+//! What the figures of the later chapters draw on: a target, and the pipeline with its viewport in the middle.
 
 use crate::exact::Exact;
 use crate::framebuffer::Framebuffer;
@@ -35,6 +35,13 @@ impl RasterizerChoice {
         Self::Tiled,
     ];
 
+    /// The fastest of them.
+    #[cfg(feature = "tiled")]
+    pub const FASTEST: Self = Self::Tiled;
+    /// The fastest of them.
+    #[cfg(not(feature = "tiled"))]
+    pub const FASTEST: Self = Self::Edge;
+
     /// How it is called on the command line.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -61,7 +68,7 @@ enum Drawing {
 pub struct Canvas {
     /// The number of the frame, 0 if the picture is no animation.
     pub frame: u32,
-    /// It comes uncleared.
+    /// The target is not cleared at first.
     drawing: Drawing,
     /// Who observes the pipeline; the target carries the same observer.
     observer: Option<SharedProbe>,

@@ -178,6 +178,16 @@ impl Variant {
         Self { rasterizer: Some(RasterizerChoice::Edge), ..self }
     }
 
+    /// The same, with the fast rasterizer, or with the exact one, which draws the same, where it is not built in.
+    ///
+    /// # Panics
+    /// If it does not use the pipeline.
+    #[must_use]
+    pub const fn tiled(self) -> Self {
+        assert!(self.rasterizer.is_some(), "only the pipeline has a choice of rasterizers");
+        Self { rasterizer: Some(RasterizerChoice::FASTEST), ..self }
+    }
+
     /// The same, as an animation: the canvas says which frame to draw, and each can be drawn by itself.
     ///
     /// # Panics

@@ -95,7 +95,7 @@ pub fn draw_enlarged(
     screen.report(|observer| observer.enlarged(factor));
     draw(&mut screen);
     screen.report(|observer| observer.enlarged(1));
-    // The blocks are no news to an observer.
+    // Writing the blocks is not reported.
     into.set_observer(None);
     paste(into, &enlarged(&screen, factor), 0, 0);
     into.set_observer(observer);

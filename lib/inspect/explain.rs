@@ -209,7 +209,7 @@ impl<'a> Explainer<'a> {
         let title = format!("The picture is cleared to {color:?}");
         self.found.entries.push(Entry::new("cleared", title));
         self.end_triangle();
-        // What was drawn before is gone, but not forgotten: triangles are counted anew.
+        // What was drawn before stays in the history; triangles are counted from 1 again.
         (self.number, self.assembled, self.piece) = (0, None, None);
     }
 
@@ -250,7 +250,7 @@ impl<'a> Explainer<'a> {
             return;
         }
         if self.primitive.is_none() {
-            // Every write by the program itself is news.
+            // Every write by the program itself gets an entry of its own.
             (self.is_open, self.is_noting) = (false, false);
         }
         let hit = self.hits;

@@ -5,11 +5,13 @@ use glam::DVec2;
 use super::history::{Field, USED, Value, field, table, value_names};
 use super::record::Primitive;
 use crate::exact::edge::{Coverage, SUBPIXELS, center};
-use crate::interpolate::{Interpolation, Projected, ScreenTriangle, linear};
+use crate::interpolate::{
+    EdgeParameter, Interpolation, Projected, ScreenTriangle, attach_depths, ends_of_row, linear,
+};
 use crate::line::Line;
-use crate::payload::Payload;
+use crate::payload::{Payload, Walk};
 use crate::rect::{Pixel, Rect};
-use crate::scanline::{Edge, Half, HalfFill, StepLimit, Walk, split};
+use crate::scanline::{Edge, EdgeWalk, Half, HalfFill, split};
 
 /// The step of a line that drew a pixel.
 pub(super) fn line_at(line: &Line, pixel: Pixel, screen: Rect) -> Vec<Field> {
@@ -38,15 +40,16 @@ pub(super) fn line_at(line: &Line, pixel: Pixel, screen: Rect) -> Vec<Field> {
     fields
 }
 
-/// Which row of which half met a pixel, with the parameters on the way.
+/// Which row of which half met a pixel, with what was stepped on the way.
 #[derive(Clone, Copy)]
 struct Hit {
     half: usize,
+    /// Where the row begins and ends.
     ends: [f64; 2],
-    /// t on the left and on the right edge.
-    edges: [f64; 2],
-    /// t′ along the row.
-    along: f64,
+    /// On the left and on the right edge.
+    edges: [EdgeParameter; 2],
+    /// Along the row.
+    here: EdgeParameter,
 }
 
 /// What a payload is, each time that the walk up a half meets a pixel: at the start of the row, at its end, and there.
@@ -73,15 +76,20 @@ fn payload_at<P: Payload>(
     found
 }
 
-/// Walks a half with the parameter t as its payload, from 0 to 1 on its edges and again along its rows.
-fn hits_of(half: &Half, index: usize, walk: Walk, pixel: Pixel, screen: Rect) -> Vec<Hit> {
-    let t = Edge { start: 0.0, end: 1.0 };
-    let found = payload_at(half, &Half { left: t, right: t }, walk, pixel, screen, |_| [0.0, 1.0]);
-    let hit = |(ends, [left, right, along]): ([f64; 2], [f64; 3])| Hit {
+/// Walks a half with the parameter t as its payload, and a depth beside it.
+fn hits_of(
+    (index, half, depths): (usize, &Half, &Half<f64>),
+    walk: Walk,
+    pixel: Pixel,
+    screen: Rect,
+) -> Vec<Hit> {
+    let carried = EdgeParameter::on(depths);
+    let found = payload_at(half, &carried, walk, pixel, screen, EdgeParameter::along_row);
+    let hit = |(ends, [left, right, here]): ([f64; 2], [EdgeParameter; 3])| Hit {
         half: index,
         ends,
         edges: [left, right],
-        along,
+        here,
     };
     found.into_iter().map(hit).collect()
 }
@@ -89,7 +97,7 @@ fn hits_of(half: &Half, index: usize, walk: Walk, pixel: Pixel, screen: Rect) ->
 /// For each time that a triangle, or half of one, met the pixel: the fields.
 pub(super) fn rows_at(primitive: &Primitive, pixel: Pixel, screen: Rect) -> Vec<Vec<Field>> {
     match primitive {
-        Primitive::Half(HalfFill { half: half @ Half { left, right }, walk }) => {
+        Primitive::Half(HalfFill { half: half @ Half { left, right }, edges }) => {
             let rows = [
                 ("left, from", left.start),
                 ("left, to", left.end),
@@ -97,9 +105,12 @@ pub(super) fn rows_at(primitive: &Primitive, pixel: Pixel, screen: Rect) -> Vec<
                 ("right, to", right.end),
             ];
             let rows = rows.map(|(name, p)| (name.to_owned(), p.to_array().map(Some).to_vec())).to_vec();
-            let edges = field("sides", "on the screen", table(&["x", "y"], rows));
-            let hits = hits_of(half, 0, *walk, pixel, screen);
-            hits.iter().map(|hit| vec![edges.clone(), row_text("", hit, pixel)]).collect()
+            let sides = field("sides", "on the screen", table(&["x", "y"], rows));
+            let walk = Walk { edges: *edges, ..Walk::default() };
+            let nowhere = Edge { start: 0.0, end: 0.0 };
+            let depths = Half { left: nowhere, right: nowhere };
+            let hits = hits_of((0, half, &depths), walk, pixel, screen);
+            hits.iter().map(|hit| vec![sides.clone(), row_text("", hit, pixel)]).collect()
         }
         Primitive::Triangle(triangle) => triangle_hits(triangle, pixel, screen),
         Primitive::Line(_) | Primitive::Coverage(_) => Vec::new(),
@@ -139,34 +150,32 @@ fn interpolated(
     let Some(halves) = component(triangle, k, interpolation) else {
         return [Projected { w: 0.0, values: [0.0] }; 3];
     };
-    let half = &halves[hit.half];
-    let at = |edge: &Edge<Projected<f64, 1>>, t| interpolation.between(edge.start, edge.end, t);
-    let (left, right) = (at(&half.left, hit.edges[0]), at(&half.right, hit.edges[1]));
-    [left, right, interpolation.between(left, right, hit.along)]
+    let [left, right] = ends_of_row(&halves[hit.half], hit.edges.map(|edge| edge.t), interpolation);
+    [left, right, interpolation.between(left, right, hit.here.t)]
 }
 
-/// Something that is stepped by itself, a depth or a value of chapter 3: at both ends of the row, and at the pixel, which
-/// is met for the `hit`th time.
+/// A value of chapter 3, which is stepped by itself: at both ends of the row, and at the pixel, which is met for the
+/// `hit`th time.
 fn stepped(
     triangle: &ScreenTriangle,
     values: [f64; 3],
-    limit: StepLimit,
     hit: usize,
     pixel: Pixel,
     screen: Rect,
-    between: impl Fn(f64, f64, f64) -> f64,
 ) -> Option<[f64; 3]> {
     let split = split(triangle.positions)?;
-    let walk = Walk { limit, ..triangle.walk };
-    let halves = [split.lower, split.upper].into_iter().zip(split.attach(values, between));
-    let mut found =
-        halves.flat_map(|(half, carried)| payload_at(&half, &carried, walk, pixel, screen, |ends| ends));
+    let carried = split.attach(values, |a, b, t| linear([a], [b], t)[0]);
+    let halves = [split.lower, split.upper].into_iter().zip(carried);
+    let mut found = halves
+        .flat_map(|(half, carried)| payload_at(&half, &carried, triangle.walk, pixel, screen, |ends| ends));
     found.nth(hit).map(|(_, values)| values)
 }
 
 fn triangle_hits(triangle: &ScreenTriangle, pixel: Pixel, screen: Rect) -> Vec<Vec<Field>> {
-    let halves = halves(triangle);
-    let hits = halves.iter().enumerate().flat_map(|(i, half)| hits_of(half, i, triangle.walk, pixel, screen));
+    let Some(split) = split(triangle.positions) else { return Vec::new() };
+    let depths = attach_depths(&split, triangle.depth.unwrap_or_default());
+    let halves = [split.lower, split.upper];
+    let hits = (0..2).flat_map(|i| hits_of((i, &halves[i], &depths[i]), triangle.walk, pixel, screen));
     hits.enumerate().map(|(i, hit)| hit_fields(triangle, i, &hit, pixel, screen)).collect()
 }
 
@@ -180,17 +189,9 @@ fn hit_fields(triangle: &ScreenTriangle, number: usize, hit: &Hit, pixel: Pixel,
     fields.extend(parameters(triangle, hit));
     fields.extend(end_of_row(hit));
     fields.push(projected_values(triangle, hit));
-    // At an edge's end the book's remedy clamps t alone.
-    let limit = match triangle.walk.limit {
-        StepLimit::Everywhere => StepLimit::Everywhere,
-        StepLimit::Edges | StepLimit::Overrun => StepLimit::Overrun,
-    };
-    let depths = triangle
-        .depth
-        .and_then(|depth| stepped(triangle, depth, limit, number, pixel, screen, |a, b, t| a + (b - a) * t));
-    if let Some([left, right, here]) = depths {
-        let rows = [("left", left), ("right", right), ("here", here)];
-        let rows = rows.map(|(name, depth)| (name.to_owned(), vec![Some(depth)])).to_vec();
+    if triangle.depth.is_some() {
+        let rows = [("left", hit.edges[0]), ("right", hit.edges[1]), ("here", hit.here)];
+        let rows = rows.map(|(name, at)| (name.to_owned(), vec![Some(at.depth)])).to_vec();
         fields.push(field("depths", "depth, stepped", table(&["z"], rows)));
     }
     fields
@@ -244,7 +245,7 @@ fn parameters(triangle: &ScreenTriangle, hit: &Hit) -> [Field; 3] {
         }
         Interpolation::Reciprocal => ("reciprocal", "1/ω and V/ω linearly, V_p their quotient"),
     };
-    let rows = vec![("here".to_owned(), vec![Some(hit.edges[0]), Some(hit.edges[1]), Some(hit.along)])];
+    let rows = vec![("here".to_owned(), vec![Some(hit.edges[0].t), Some(hit.edges[1].t), Some(hit.here.t)])];
     let columns = ["left edge", "right edge", "along row"].map(str::to_owned).to_vec();
     [
         field("t", "t′", Value::Table { columns, rows }),
@@ -257,7 +258,7 @@ fn parameters(triangle: &ScreenTriangle, hit: &Hit) -> [Field; 3] {
 fn end_of_row(hit: &Hit) -> Option<Field> {
     let text = "t′ reaches or passes 1, the end of the row: a texture coordinate that ends at 1 there begins anew with the \
                 address mode Repeat, and shows the first texel. Clamp, and the exact rasterizer, keep the last one";
-    (hit.along >= 1.0).then(|| field("end_of_row", "note", Value::Text(text.to_owned())))
+    (hit.here.t >= 1.0).then(|| field("end_of_row", "note", Value::Text(text.to_owned())))
 }
 
 /// ω and all values: at the vertices, at both ends of the row, and at the pixel in both ways.
@@ -310,9 +311,7 @@ fn stepped_values(triangle: &ScreenTriangle, hit: usize, pixel: Pixel, screen: R
     let found: Vec<[f64; 3]> = (0..count)
         .map(|k| {
             let values = [0, 1, 2].map(|i| triangle.varyings[i][k]);
-            let limit = triangle.walk.limit;
-            let between = |a, b, t| linear([a], [b], t)[0];
-            stepped(triangle, values, limit, hit, pixel, screen, between).unwrap_or_default()
+            stepped(triangle, values, hit, pixel, screen).unwrap_or_default()
         })
         .collect();
     let mut rows: Vec<(String, Vec<Option<f64>>)> = Vec::new();
@@ -330,12 +329,12 @@ pub(super) fn miss(primitive: &Primitive, pixel: Pixel, screen: Rect) -> Option<
     match primitive {
         Primitive::Line(Line { a, b, .. }) => is_in_box(&[*a, *b], pixel)
             .then(|| "its other coordinate is cut to another pixel here".to_owned()),
-        Primitive::Half(HalfFill { half: half @ Half { left, right }, walk }) => {
+        Primitive::Half(HalfFill { half: half @ Half { left, right }, edges }) => {
             let points = [left.start, left.end, right.start, right.end];
-            is_in_box(&points, pixel).then(|| row_miss(&[*half], *walk, pixel, screen))
+            is_in_box(&points, pixel).then(|| row_miss(&[*half], *edges, pixel, screen))
         }
         Primitive::Triangle(triangle) => is_in_box(&triangle.positions, pixel)
-            .then(|| row_miss(&halves(triangle), triangle.walk, pixel, screen)),
+            .then(|| row_miss(&halves(triangle), triangle.walk.edges, pixel, screen)),
         Primitive::Coverage(coverage) => {
             let (x, y) = pixel;
             coverage.bounding_box(screen).contains(x, y).then(|| edge_miss(coverage, pixel))
@@ -351,10 +350,10 @@ fn is_in_box(points: &[DVec2], (x, y): Pixel) -> bool {
     place.cmpge(low).all() && place.cmple(high).all()
 }
 
-fn row_miss(halves: &[Half], walk: Walk, (_, y): Pixel, screen: Rect) -> String {
+fn row_miss(halves: &[Half], edges: EdgeWalk, (_, y): Pixel, screen: Rect) -> String {
     let mut rows = Vec::new();
     for half in halves {
-        half.spans(walk, screen, |span| {
+        half.spans(edges, screen, |span| {
             if span.y == y {
                 rows.push(format!("{:.3} to {:.3}", span.start, span.end));
             }

@@ -43,7 +43,7 @@ pub(super) struct Band<'a> {
     pub(super) rect: Rect,
     /// How many pixels there are from one row to the next.
     pub(super) stride: usize,
-    /// How many there are to the same place of the next band; 0 in a copy, for which nothing is fetched ahead.
+    /// How many there are to the same pixel of the next band; 0 in a copy, for which nothing is fetched ahead.
     pub(super) to_next_band: usize,
     pub(super) colors: &'a mut [Color],
     pub(super) depths: &'a mut [f32],

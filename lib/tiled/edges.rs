@@ -53,7 +53,7 @@ impl TriangleSetup {
         // Without change to the right a row is covered, or it is not: a bound far to the right of all, or to the left.
         const FAR: f64 = 1e6;
         let (zero, half, one, infinity) = (f64x4::ZERO, f64x4::HALF, f64x4::ONE, f64x4::splat(f64::INFINITY));
-        // From the corners b, c, a to c, a, b.
+        // From the vertices b, c, a to c, a, b.
         let [a, b, c] = positions.map(|position| position.map(|along| f64::from(along - PIXEL / 2)));
         let [from, to] = [[b, c, a], [c, a, b]]
             .map(|[i, j, k]| [0, 1].map(|axis| f64x4::new([i[axis], j[axis], k[axis], 0.0])));

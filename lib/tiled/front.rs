@@ -171,17 +171,17 @@ fn assemble<S: Shader<N>, const N: usize>(
     shader: &S,
     context: &Context<'_>,
 ) {
-    let corners = mesh.triangle(number);
-    let outside = vertices.outside(corners);
+    let triangle = mesh.triangle(number);
+    let outside = vertices.outside(triangle);
     let (any, all) = (outside[0] | outside[1] | outside[2], outside[0] & outside[1] & outside[2]);
     let beyond_a_plane = all & !NOT_REPRESENTABLE != 0;
     if any == 0 {
-        chunk.add(number as u32, vertices.positions(corners), context);
+        chunk.add(number as u32, vertices.positions(triangle), context);
     } else if !beyond_a_plane {
         let projection = &context.projection;
         // Clipping is rare, and needs the vertex as it was: shade it once more.
-        let triangle = corners.map(|corner| shader.vertex(&mesh.vertices()[corner]));
-        let polygon = clip_triangle(triangle, &projection.planes, projection.state.clip_test);
+        let unclipped = triangle.map(|vertex| shader.vertex(&mesh.vertices()[vertex]));
+        let polygon = clip_triangle(unclipped, &projection.planes, projection.state.clip_test);
         let divided: ArrayVec<NdcVertex<N>, 9> = polygon.into_iter().map(NdcVertex::from).collect();
         for piece in fan(divided) {
             chunk.add_piece(&piece, context);

@@ -58,11 +58,11 @@ impl<const N: usize> PackedTriangleVaryings<N> {
     #[inline(always)]
     pub(super) fn of(triangle: Triangle<'_>) -> Self {
         let [first, second, third] = triangle.packed.map(PackedVaryings::of);
-        let difference = |corner: PackedVaryings<N>| corner.with(&first, |corner, first| corner - first);
+        let difference = |vertex: PackedVaryings<N>| vertex.with(&first, |vertex, first| vertex - first);
         Self { first, to_second: difference(second), to_third: difference(third) }
     }
 
-    /// Where the second and the third corner have these weights.
+    /// Where the second and the third vertex have these weights.
     #[inline(always)]
     pub(super) fn at(&self, [second, third]: [f32; 2]) -> PackedVaryings<N> {
         let [second, third] = [second, third].map(f32x8::splat);

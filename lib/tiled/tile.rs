@@ -123,7 +123,7 @@ impl<'a> Tile<'a> {
             covered &= covered - 1;
             let (row, column) = (bit / SMALL_SIDE, bit % SMALL_SIDE);
             let start = varyings.at([weights[0][row], weights[1][row]]).first;
-            // The remainder only tells that it is in the list.
+            // The remainder only shows the compiler that the index is in range.
             let packed = start + step * f32x8::splat(STEPS[(column - firsts[row] as usize) % SMALL_SIDE]);
             self.enqueue(frame, packed, corner + row * width + column);
         }
@@ -265,7 +265,7 @@ fn eight<T>(pixels: &mut [T], first: usize) -> &mut [T; LANES] {
     pixels[first..].first_chunk_mut().expect("a band has room for eight")
 }
 
-/// Asks for the same place of the next band, which is mostly cleared soon.
+/// Asks for the same pixel of the next band, which is mostly cleared soon.
 ///
 /// Only a hint: the picture does not depend on it, and there need not be a next band.
 #[inline(always)]

@@ -113,18 +113,18 @@ impl Vertices {
         });
     }
 
-    /// Adds the corners of a triangle that has been clipped and divided; answers where they are, if they are near enough.
+    /// Adds the vertices of a triangle that has been clipped and divided; answers where they are, if they are near enough.
     pub(super) fn push<const N: usize>(
         &mut self,
-        corners: &[NdcVertex<N>; 3],
+        triangle: &[NdcVertex<N>; 3],
         projection: &Projection<'_>,
     ) -> Option<[SnappedPosition; 3]> {
-        let [a, b, c] = corners.each_ref().map(|vertex| projection.snapped_position(vertex));
+        let [a, b, c] = triangle.each_ref().map(|vertex| projection.snapped_position(vertex));
         let positions = [a?, b?, c?];
         let first = self.packed.len();
         self.positions.extend(positions);
         self.packed.resize(first + 3 * blocks_of(N), f32x8::ZERO);
-        for (vertex, packed) in corners.iter().zip(self.packed[first..].chunks_exact_mut(blocks_of(N))) {
+        for (vertex, packed) in triangle.iter().zip(self.packed[first..].chunks_exact_mut(blocks_of(N))) {
             pack(vertex, projection.state.interpolation, packed);
         }
         Some(positions)
@@ -137,14 +137,14 @@ impl Vertices {
 
     /// Where vertices are.
     #[inline(always)]
-    pub(super) fn positions(&self, corners: [usize; 3]) -> [SnappedPosition; 3] {
-        corners.map(|corner| self.positions[corner])
+    pub(super) fn positions(&self, triangle: [usize; 3]) -> [SnappedPosition; 3] {
+        triangle.map(|vertex| self.positions[vertex])
     }
 
     /// What each of them lies outside of.
     #[inline(always)]
-    pub(super) fn outside(&self, corners: [usize; 3]) -> [u8; 3] {
-        corners.map(|corner| self.outside[corner])
+    pub(super) fn outside(&self, triangle: [usize; 3]) -> [u8; 3] {
+        triangle.map(|vertex| self.outside[vertex])
     }
 
     /// A triangle of vertices with so many varyings.
@@ -152,11 +152,11 @@ impl Vertices {
     /// Inlined, as [`SmallTriangleSetup::new`](super::edges::SmallTriangleSetup::new) is: positions that are written to memory here would be read there
     /// in wider pieces, for which the processor waits.
     #[inline(always)]
-    pub(super) fn triangle<const N: usize>(&self, corners: [usize; 3]) -> Triangle<'_> {
+    pub(super) fn triangle<const N: usize>(&self, triangle: [usize; 3]) -> Triangle<'_> {
         let blocks = blocks_of(N);
         Triangle {
-            positions: self.positions(corners),
-            packed: corners.map(|corner| &self.packed[corner * blocks..(corner + 1) * blocks]),
+            positions: self.positions(triangle),
+            packed: triangle.map(|vertex| &self.packed[vertex * blocks..(vertex + 1) * blocks]),
         }
     }
 }
@@ -169,8 +169,8 @@ struct Slots<'a> {
 }
 
 fn pack<const N: usize>(vertex: &NdcVertex<N>, interpolation: Interpolation, packed: &mut [f32x8]) {
-    let corner = LinearVaryings::<f32, N>::new(vertex, interpolation);
-    let mut numbers = [corner.distance, corner.depth].into_iter().chain(corner.values);
+    let linear = LinearVaryings::<f32, N>::new(vertex, interpolation);
+    let mut numbers = [linear.distance, linear.depth].into_iter().chain(linear.values);
     for block in packed {
         *block = f32x8::new(from_fn(|_| numbers.next().unwrap_or(0.0)));
     }
