@@ -15,6 +15,12 @@ pub(crate) const CHAPTER: Chapter = Chapter {
     question: "How does a program put a picture on a screen?",
     variants: &[
         Variant::new(
+            "pawn",
+            pawn,
+            "a pawn made of 16×22 pixels, in six colors, with the grid that a screen does not show",
+        )
+        .size(320, 440),
+        Variant::new(
             "pixel",
             pixel,
             "one red pixel at (200, 200), counted from the lower left corner; try --zoom 12@200,200",
@@ -43,6 +49,53 @@ fn pixel(framebuffer: &mut Framebuffer) {
     framebuffer.set(200, 200, Color::RED);
 }
 // ANCHOR_END: pixel
+
+/// A letter for each pixel, the highest row first: the outline, and four shades of wood.
+const PAWN: [&str; 22] = [
+    "................",
+    "......oooo......",
+    ".....ollmmo.....",
+    "....olwlmmdo....",
+    "....ollmmmdo....",
+    "....olmmmddo....",
+    ".....ommddo.....",
+    "....oooooooo....",
+    "...ollmmmmddo...",
+    "....oooooooo....",
+    ".....ollmdo.....",
+    ".....ollmdo.....",
+    ".....ollmdo.....",
+    "....ollmmmdo....",
+    "....olmmmddo....",
+    "...ollmmmmddo...",
+    "..ollmmmmmmddo..",
+    "..oooooooooooo..",
+    ".ollwmmmmmmmddo.",
+    ".ollmmmmmmmmddo.",
+    ".oooooooooooooo.",
+    "................",
+];
+
+// ANCHOR: pawn
+/// A pawn on a screen of 16×22 pixels, each shown as a block of 20×20.
+fn pawn(framebuffer: &mut Framebuffer) {
+    picture::draw_enlarged(framebuffer, (16, 22), 20, |screen| {
+        for (y, row) in (0..).zip(PAWN.iter().rev()) {
+            for (x, letter) in (0..).zip(row.chars()) {
+                let color = match letter {
+                    'o' => Color::rgb(62, 32, 20),
+                    'd' => Color::rgb(140, 78, 40),
+                    'm' => Color::rgb(192, 122, 66),
+                    'l' => Color::rgb(228, 172, 110),
+                    'w' => Color::rgb(255, 240, 210),
+                    _ => Color::rgb(44, 62, 88),
+                };
+                screen.set(x, y, color);
+            }
+        }
+    });
+}
+// ANCHOR_END: pawn
 
 const DIGIT: [&str; 10] = [
     "........", "..####..", ".#....#.", "......#.", "...###..", "......#.", "......#.", ".#....#.",

@@ -20,12 +20,12 @@ pub(crate) const CHAPTER: Chapter = Chapter {
     name: "ch03_barycentric",
     question: "The corners have values: which value has a pixel between them?",
     variants: &[
+        Variant::new("weights", weights, "the weight of each corner by areas: its lines of equal weight run along the opposite edge")
+            .source("section 3.2.2, Figures 3-6 and 3-7"),
         Variant::new("rgb", rgb, "red, green and blue corners, and all their mixtures between them").source("section 3.2.5"),
         Variant::new("gray", gray, "one value a corner: black, white, black").source("section 3.2.4"),
         Variant::new("texture", texture, "texture coordinates as values: half of the book's 2×2 texture on a triangle")
             .source("section 3.3, Figures 3-10 and 3-11"),
-        Variant::new("weights", weights, "the weight of each corner by areas: its lines of equal weight run along the opposite edge")
-            .source("section 3.2.2, Figures 3-6 and 3-7"),
         Variant::new("spikes", spikes, "orange: values out of the range of the corners, at the tips (past the end of an edge) and at the ends of rows")
             .source("section 11.4")
             .remedied_by("limited"),

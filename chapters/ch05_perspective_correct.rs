@@ -23,6 +23,7 @@ pub(crate) const CHAPTER: Chapter = Chapter {
     name: "ch05_perspective_correct",
     question: "Why does a texture bend when a surface is tilted?",
     variants: &[
+        Variant::new("floor", floor, "a checkered floor to the horizon: every line is straight, and the squares shrink towards the horizon"),
         Variant::new("correct", correct, "the tilted square, interpolated in space: the line between the colors is straight")
             .source("section 5.4, Figure 5-8"),
         Variant::new("affine", affine, "the same square, interpolated on the screen: the line between the colors breaks at the diagonal")
@@ -34,7 +35,6 @@ pub(crate) const CHAPTER: Chapter = Chapter {
             .source("section 5.5.4"),
         Variant::new("barycentric", barycentric, "the tilted square by weights: those of areas on the screen, each divided by its corner's ω")
             .source("first note"),
-        Variant::new("floor", floor, "a checkered floor to the horizon: every line is straight, and the squares shrink towards the horizon"),
         Variant::new("floor-affine", floor_affine, "the same two triangles, interpolated on the screen: the floor folds along the diagonal")
             .remedied_by("floor"),
     ],

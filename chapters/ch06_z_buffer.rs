@@ -21,6 +21,8 @@ pub(crate) const CHAPTER: Chapter = Chapter {
     name: "ch06_z_buffer",
     question: "Which surface is in front?",
     variants: &[
+        Variant::new("intersecting", intersecting, "the same with a z-buffer: each triangle is seen where it is nearer, and they meet in a line")
+            .source("section 6.2, Figure 6-3"),
         Variant::new("z-buffer", z_buffer, "the tilted square before a square that faces us: drawn first, and still in front where it is nearer")
             .source("section 6.2, Figure 6-5"),
         Variant::new("painter", painter, "three squares drawn from far to near, without a depth test: each covers what is behind it")
@@ -29,8 +31,6 @@ pub(crate) const CHAPTER: Chapter = Chapter {
             .source("section 6.1, Figure 6-3").remedied_by("intersecting"),
         Variant::new("painter-green-first", painter_green_first, "the same, green drawn first: no order is right")
             .source("section 6.1, Figure 6-3").remedied_by("intersecting"),
-        Variant::new("intersecting", intersecting, "the same with a z-buffer: each triangle is seen where it is nearer, and they meet in a line")
-            .source("section 6.2, Figure 6-3"),
         Variant::new("depth", depth, "a z-buffer, as hardware stores it, in 16 grays: black is near (1), white is far (12); most of them lie close by"),
         Variant::new("w-buffer", w_buffer, "the same scene with ω stored, in 16 grays: black is near (1), white is far (12); each stands for the same distance"),
         Variant::new("uncleared", uncleared, "the second frame of a moving square, depths of the first not cleared: the old square cuts a hole into the new one")

@@ -23,14 +23,14 @@ pub(crate) const CHAPTER: Chapter = Chapter {
     name: "ch07_clipping",
     question: "What if a triangle reaches behind the eye?",
     variants: &[
+        Variant::new("in-front", in_front, "the same floor, clipped at the near plane: it ends at the horizon, and below the picture's lower edge")
+            .source("section 7.3, Figure 7-5"),
         Variant::new("near", near, "two crossing walls, cut off at ω = 15: compare with 'reciprocal', their near ends are gone")
             .source("section 7.4, Figure 7-10"),
         Variant::new("reciprocal", reciprocal, "two crossing walls with the depth −1/z: they meet in a straight, upright line")
             .source("section 7.2"),
         Variant::new("behind", behind, "a floor that begins behind the eye, not clipped: what is behind us turns up in the sky, upside down")
             .source("section 7.3, Figure 7-5").remedied_by("in-front"),
-        Variant::new("in-front", in_front, "the same floor, clipped at the near plane: it ends at the horizon, and below the picture's lower edge")
-            .source("section 7.3, Figure 7-5"),
         Variant::new("polygon", polygon, "left: a polygon and a line that cuts it; right: what is left. Green: where the outline enters, red: where it leaves")
             .source("section 7.4, Figure 7-6"),
     ],

@@ -22,6 +22,7 @@ pub(crate) const CHAPTER: Chapter = Chapter {
     name: "ch09_pipeline",
     question: "How is all this put together?",
     variants: &[
+        Variant::with_pipeline("blended", blended, "translucent triangles over a checkered wall: source-over on the left, where order matters; additive on the right"),
         Variant::with_pipeline("vbo", vbo, "chapter 8's triangle from a vertex buffer, through the whole pipeline: the same picture").source("section 9.2"),
         Variant::with_pipeline("cull-ccw", cull_ccw, "two triangles, the back culled: the counter-clockwise one is left").source("section 9.3"),
         Variant::with_pipeline("cull-cw", cull_cw, "the same with clockwise as the front, the back culled: the clockwise one is left").source("section 9.3"),
@@ -34,7 +35,6 @@ pub(crate) const CHAPTER: Chapter = Chapter {
         Variant::with_pipeline("tearing", tearing, "one buffer, seen while it is drawn: the new picture in the lower half, the old one above it").source("section 9.4.2").remedied_by("presented"),
         Variant::with_pipeline("presented", presented, "two buffers, seen at the same moment: the old picture, whole").source("section 9.4.2, Figure 9-9"),
         Variant::with_pipeline("indexed", indexed, "a hill of 49 vertices and 72 triangles; each vertex is shaded once, and up to six triangles share it"),
-        Variant::with_pipeline("blended", blended, "translucent triangles over a checkered wall: source-over on the left, where order matters; additive on the right"),
     ],
 };
 

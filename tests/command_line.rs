@@ -50,7 +50,7 @@ fn one_command_one_picture() {
     let folder = folder("lead");
     let output = run_in(&folder, &[]);
     assert!(output.status.success());
-    let path = Path::new("out").join("ch05_perspective_correct").join("correct.png");
+    let path = Path::new("out").join("ch05_perspective_correct").join("floor.png");
     assert_eq!(text(&output.stdout), format!("{}\n", path.display()));
     assert!(output.stderr.is_empty());
     assert_eq!(image::image_dimensions(folder.join(path)).expect("a picture"), (640, 480));
@@ -242,7 +242,7 @@ fn what_makes_no_sense_is_refused() {
     refused("format_alone", &["--format", "json"], 2, "--inspect");
     refused("steps_and_overdraw", &["--steps", "--overdraw"], 2, "--overdraw");
     refused("steps_bmp", &["--steps", "--out", "a.bmp"], 2, ".gif or a .png");
-    refused("variant", &["afine"], 2, "no variant 'afine'; it has: correct, affine");
+    refused("variant", &["afine"], 2, "no variant 'afine'; it has: floor, correct, affine");
     refused("option", &["--sise", "4x4"], 2, "--sise");
     refused("two", &["affine", "correct"], 2, "correct");
     refused("size", &["--size", "640"], 2, "640x480");

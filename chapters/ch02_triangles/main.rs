@@ -19,13 +19,13 @@ pub(crate) const CHAPTER: Chapter = Chapter {
     name: "ch02_triangles",
     question: "Which pixels belong to a triangle?",
     variants: &[
-        Variant::new("flat", scanlines::flat, "one triangle in one color").source("section 2.2"),
         Variant::new(
             "split",
             scanlines::split_in_two,
             "the two halves, and the new point P′ on the long edge at the height of the middle vertex",
         )
         .source("section 2.2, Figure 2-3"),
+        Variant::new("flat", scanlines::flat, "one triangle in one color").source("section 2.2"),
         Variant::new(
             "overshoot",
             scanlines::overshoot,

@@ -1,5 +1,6 @@
 //! What a chapter's program does with its arguments.
 
+use std::io::IsTerminal;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -71,11 +72,30 @@ fn run(chapter: &Chapter, request: &Request) -> Result<(), Failure> {
     }
     match &request.compare {
         None if request.animate => animate(variant, request, &destination),
-        None => draw_one(variant, request, &destination),
+        None => {
+            draw_one(variant, request, &destination)?;
+            if request.variant.is_none() && std::io::stderr().is_terminal() {
+                note(&hints(chapter));
+            }
+            Ok(())
+        }
         Some(comparison) => {
             draw_comparison(variant, other(chapter, variant, comparison)?, request, &destination)
         }
     }
+}
+
+/// For those who have named no variant: what is seen, what to compare it with, and how to ask a pixel.
+fn hints(chapter: &Chapter) -> String {
+    let Variant { name, look, size: (width, height), .. } = chapter.lead();
+    let run = format!("cargo run --bin {} --", chapter.name);
+    let is_compared = |variant: &&Variant| matches!(variant.mistake, Mistake::RemediedBy(_));
+    let compare = match chapter.variants.iter().find(is_compared) {
+        Some(mistake) => format!("A mistake beside its remedy: {run} {} --compare", mistake.name),
+        None => format!("What else can be drawn: {run} --list"),
+    };
+    let pixel = format!("{},{}", width / 2, height / 2);
+    format!("{name}: {look}\n{compare}\nWhat happened at a pixel: {run} {name} --inspect {pixel}")
 }
 
 fn find<'a>(chapter: &'a Chapter, name: &str) -> Result<&'a Variant, Failure> {
@@ -331,4 +351,26 @@ fn draw_comparison(
     let path = destination.write(&format!("{}--{}", name_of(this, request), that.name), &picture)?;
     note(&format!("{count} of {total} pixels differ"));
     say(&path.display().to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn nothing(_: &mut Framebuffer) {}
+
+    #[test]
+    fn hints_for_a_newcomer() {
+        const RIGHT: Variant = Variant::new("right", nothing, "what is right").size(640, 480);
+        const WRONG: Variant = Variant::new("wrong", nothing, "what is wrong").remedied_by("right");
+        let with_mistake = Chapter { name: "ch00", question: "?", variants: &[RIGHT, WRONG] };
+        assert_eq!(
+            hints(&with_mistake),
+            "right: what is right\n\
+             A mistake beside its remedy: cargo run --bin ch00 -- wrong --compare\n\
+             What happened at a pixel: cargo run --bin ch00 -- right --inspect 320,240"
+        );
+        let without = Chapter { variants: &[RIGHT], ..with_mistake };
+        assert!(hints(&without).contains("\nWhat else can be drawn: cargo run --bin ch00 -- --list\n"));
+    }
 }

@@ -1,0 +1,252 @@
+//! Everything at once: matrices, a look-at camera, light, textures with mip maps, a depth buffer, and blending.
+
+use std::array::from_fn;
+
+use glam::{DMat4, DVec3, dvec3};
+use rasterbook::area::Winding;
+use rasterbook::cull::CullMode;
+use rasterbook::figure::{Canvas, assets};
+use rasterbook::light::{blinn_phong, dot, lambert, normalize};
+use rasterbook::merge::{Blend, Merge};
+use rasterbook::mipmap::MipMaps;
+use rasterbook::model::ModelVertex;
+use rasterbook::srgb::{decode, encode};
+use rasterbook::texture::{AddressMode, Texture};
+use rasterbook::transform::{Frustum, look_at, normal_matrix, rotate_x_to_z, scale, translate};
+use rasterbook::varyings::Derivatives;
+use rasterbook::{ClipVertex, Color, LoadOp, Mesh, Real, RenderState, Shaded, Shader};
+
+use super::degrees;
+
+/// Towards the light: from the upper left, a little from behind; of length 1.
+const TO_LIGHT: [f64; 3] = [-0.640, 0.600, 0.480];
+/// The light of the sun, and that of the sky, which comes from everywhere.
+const SUN: [f64; 3] = [1.7, 1.55, 1.3];
+const SKY: [f64; 3] = [0.1, 0.125, 0.17];
+/// What is far away fades into this color.
+const HORIZON: Color = Color::rgb(205, 214, 222);
+
+/// A ball that shadows the floor: its center and its radius.
+type Ball = ([f64; 3], f64);
+
+/// What is the same for all things of a frame.
+#[derive(Clone)]
+struct View {
+    clip_from_world: DMat4,
+    eye: [f64; 3],
+}
+
+/// A polished thing.
+struct Thing {
+    view: View,
+    world_from_model: DMat4,
+    texture: MipMaps,
+    /// Multiplies the texture.
+    tint: [f64; 3],
+    /// How often the texture is repeated.
+    repeat: [f64; 2],
+}
+
+/// Varyings: the place in the world, the normal there, and texture coordinates.
+impl Shader<8> for Thing {
+    type Attributes = ModelVertex;
+    const USES_DERIVATIVES: bool = true;
+
+    fn vertex(&self, vertex: &ModelVertex) -> ClipVertex<8> {
+        let world = self.world_from_model * vertex.position.extend(1.0);
+        let normal = (normal_matrix(self.world_from_model) * vertex.normal).normalize();
+        let [u, v] = from_fn(|i| vertex.uv[i] * self.repeat[i]);
+        let varyings = [world.x, world.y, world.z, normal.x, normal.y, normal.z, u, v];
+        ClipVertex { position: self.view.clip_from_world * world, varyings }
+    }
+
+    fn fragment<R: Real>(&self, [x, y, z, nx, ny, nz, u, v]: [R; 8]) -> Shaded<R> {
+        let texel = self.texture.bilinear([u, v], R::of(0.0), AddressMode::Repeat);
+        self.shade([x, y, z], [nx, ny, nz], texel)
+    }
+
+    fn fragment_with_derivatives<R: Real>(&self, varyings: [R; 8], change: Derivatives<R, 8>) -> Shaded<R> {
+        let [x, y, z, nx, ny, nz, u, v] = varyings;
+        let level = self.texture.level_of_detail([change.dx[6], change.dx[7]], [change.dy[6], change.dy[7]]);
+        let texel = self.texture.trilinear([u, v], level, AddressMode::Repeat);
+        self.shade([x, y, z], [nx, ny, nz], texel)
+    }
+}
+
+impl Thing {
+    fn shade<R: Real>(&self, place: [R; 3], normal: [R; 3], texel: [R; 3]) -> Shaded<R> {
+        let normal = normalize(normal);
+        let to_eye = normalize(from_fn(|i| R::of(self.view.eye[i]) - place[i]));
+        let to_light = TO_LIGHT.map(R::of);
+        let diffuse = lambert(normal, to_light);
+        let gloss = blinn_phong(normal, to_light, to_eye, 60.0) * R::of(0.55);
+        // What turns down sees the floor, not the sky.
+        let open = normal[1] * R::of(0.4) + R::of(0.6);
+        let surface = decode(texel);
+        let light = from_fn(|k| {
+            let body = R::of(SKY[k]) * open + R::of(SUN[k]) * diffuse;
+            surface[k] * R::of(self.tint[k]) * body + R::of(SUN[k]) * gloss
+        });
+        Shaded::opaque(encode(light))
+    }
+}
+
+/// The board: translucent, so that the things below it, which stand on their heads, look like reflections.
+struct Board {
+    view: View,
+    texture: MipMaps,
+    balls: Vec<Ball>,
+}
+
+/// Varyings: x and z in the world.
+impl Shader<2> for Board {
+    type Attributes = [f64; 2];
+    const USES_DERIVATIVES: bool = true;
+
+    fn vertex(&self, &[x, z]: &[f64; 2]) -> ClipVertex<2> {
+        ClipVertex { position: self.view.clip_from_world * dvec3(x, 0.0, z).extend(1.0), varyings: [x, z] }
+    }
+
+    fn fragment<R: Real>(&self, [x, z]: [R; 2]) -> Shaded<R> {
+        let texel = self.texture.bilinear([x, z].map(|c| c * R::of(0.5)), R::of(0.0), AddressMode::Repeat);
+        self.shade(x, z, texel)
+    }
+
+    fn fragment_with_derivatives<R: Real>(&self, [x, z]: [R; 2], change: Derivatives<R, 2>) -> Shaded<R> {
+        let half = |pair: [R; 2]| pair.map(|c| c * R::of(0.5));
+        let level = self.texture.level_of_detail(half(change.dx), half(change.dy));
+        self.shade(x, z, self.texture.trilinear(half([x, z]), level, AddressMode::Repeat))
+    }
+}
+
+impl Board {
+    fn shade<R: Real>(&self, x: R, z: R, texel: [R; 3]) -> Shaded<R> {
+        let (zero, one) = (R::of(0.0), R::of(1.0));
+        let (mut sun, mut sky) = (one, one);
+        for &(center, radius) in &self.balls {
+            let way = [R::of(center[0]) - x, R::of(center[1]), R::of(center[2]) - z];
+            let along = dot(way, TO_LIGHT.map(R::of));
+            let distance = (dot(way, way) - along * along).max(zero).sqrt();
+            // The farther the ball, the softer its shadow.
+            let soft = along.max(zero) * R::of(0.05) + R::of(0.015);
+            let shadow = ((R::of(radius) + soft - distance) / (soft + soft)).max(zero).min(one);
+            sun = sun * (one - shadow);
+            let hidden = R::of(radius * radius) / dot(way, way);
+            sky = sky * (one - (hidden * R::of(0.8)).min(R::of(0.8)));
+        }
+        let surface = decode(texel);
+        let light = from_fn(|k| surface[k] * (R::of(SKY[k]) * sky + R::of(SUN[k] * TO_LIGHT[1]) * sun));
+        // Far away the board fades into the horizon.
+        let [dx, dz] = [x - R::of(self.view.eye[0]), z - R::of(self.view.eye[2])];
+        let far = ((dx * dx + dz * dz).sqrt() * R::of(1.0 / 26.0)).min(one);
+        let fade = far * far;
+        let (color, horizon) = (encode(light), HORIZON.to_f64());
+        let color = from_fn(|k| color[k] + (R::of(horizon[k]) - color[k]) * fade);
+        // Seen at a flat angle a polished board reflects more.
+        Shaded::translucent(color, R::of(0.86) + fade * R::of(0.14))
+    }
+}
+
+/// Two dark squares and two bright ones of wood, their grain in two directions.
+fn squares() -> Texture {
+    let wood = assets::texture("wood.png").expect("an asset");
+    let texel = |column: u32, row: u32| {
+        let (x, y) = (column % 128, row % 128);
+        let is_bright = (column / 128 + row / 128) % 2 == 1;
+        let (u, v) = if is_bright { (x, y) } else { (y, x) };
+        let place = [u, v].map(|c| (f64::from(c) + 0.5) / 128.0);
+        let factors = if is_bright { [1.2, 1.25, 1.35] } else { [0.5, 0.36, 0.3] };
+        let color = wood.nearest(place, AddressMode::Repeat);
+        // A thin line between the squares.
+        let line = if x < 2 || y < 2 { 0.7 } else { 1.0 };
+        Color::truncated(from_fn(|k| color[k] * factors[k] * line))
+    };
+    let rows = (0..256).flat_map(|row| (0..256).map(move |column| texel(column, row)));
+    Texture::new(256, 256, rows.collect())
+}
+
+/// A pawn on a square, or the ball: model, texture, place of its foot, height, tint.
+type Piece = (&'static str, &'static str, [f64; 2], f64, [f64; 3]);
+
+const BRIGHT: [f64; 3] = [1.25, 1.2, 1.1];
+const DARK: [f64; 3] = [0.3, 0.2, 0.16];
+
+const PIECES: [Piece; 9] = [
+    ("pawn.obj", "wood.png", [-0.5, -1.5], 1.35, BRIGHT),
+    ("pawn.obj", "wood.png", [1.5, -0.5], 1.35, DARK),
+    ("pawn.obj", "wood.png", [-2.5, 0.5], 1.35, BRIGHT),
+    ("pawn.obj", "wood.png", [0.5, 1.5], 1.35, BRIGHT),
+    ("pawn.obj", "wood.png", [3.5, 1.5], 1.35, DARK),
+    ("pawn.obj", "wood.png", [-1.5, 3.5], 1.35, DARK),
+    ("pawn.obj", "wood.png", [2.5, 4.5], 1.35, DARK),
+    ("pawn.obj", "wood.png", [-4.5, 4.5], 1.35, BRIGHT),
+    ("sphere.obj", "numbers.png", [-1.5, -0.5], 0.8, [0.9; 3]),
+];
+
+/// Where a piece stands, and the balls that its shadow is made of.
+fn stand((model, _, [x, z], height, _): &Piece) -> (DMat4, Vec<Ball>) {
+    let half = if *model == "pawn.obj" { 1.404 } else { 1.0 };
+    let size = height / (2.0 * half);
+    let turn = rotate_x_to_z(x * 1.7 + z);
+    // The models stand about (0, 0, −4) of their files, (0, 0, 4) of ours.
+    let world_from_model = translate(dvec3(*x, height / 2.0, *z))
+        * turn
+        * scale(DVec3::splat(size))
+        * translate(dvec3(0.0, 0.0, -4.0));
+    let outline: &[(f64, f64)] = match *model {
+        "pawn.obj" => {
+            &[(0.07, 0.3), (0.2, 0.2), (0.33, 0.14), (0.47, 0.11), (0.6, 0.11), (0.66, 0.17), (0.85, 0.165)]
+        }
+        _ => &[(0.5, 0.5)],
+    };
+    let balls = outline.iter().map(|&(up, radius)| ([*x, up * height, *z], radius * height)).collect();
+    (world_from_model, balls)
+}
+
+/// Pieces on a polished board, one turn of the camera in all frames.
+pub(super) fn still_life(canvas: &mut Canvas) {
+    let angle = degrees(-28.0 + 3.0 * f64::from(canvas.frame));
+    let eye = dvec3(6.4 * libm::sin(angle), 2.3, -6.4 * libm::cos(angle));
+    let view_from_world = look_at(eye, dvec3(0.0, 0.35, 0.2), DVec3::Y);
+    let clip_from_view = Frustum::from_field_of_view(degrees(36.0), 16.0 / 9.0, 0.5, 60.0).matrix();
+    let view = View { clip_from_world: clip_from_view * view_from_world, eye: eye.to_array() };
+    let stood: Vec<(DMat4, Vec<Ball>)> = PIECES.iter().map(stand).collect();
+
+    let state = RenderState {
+        cull: CullMode::Back,
+        clear_color: HORIZON,
+        load: LoadOp::Clear,
+        ..RenderState::default()
+    };
+    let mut load = LoadOp::Clear;
+    // First what the board reflects, upside down: fronts run the other way round there.
+    let mirror = scale(dvec3(1.0, -1.0, 1.0));
+    for (reflect, front_face) in [(mirror, Winding::Clockwise), (DMat4::IDENTITY, Winding::CounterClockwise)]
+    {
+        if front_face == Winding::CounterClockwise {
+            draw_board(canvas, &view, &stood);
+        }
+        for ((model, texture, _, _, tint), (world_from_model, _)) in PIECES.iter().zip(&stood) {
+            let texture = MipMaps::new(&assets::texture(texture).expect("an asset"));
+            let repeat = if *model == "pawn.obj" { [3.0, 1.0] } else { [1.0, 1.0] };
+            let world_from_model = reflect * *world_from_model;
+            let thing = Thing { view: view.clone(), world_from_model, texture, tint: *tint, repeat };
+            for part in &assets::model(model).expect("an asset").parts {
+                canvas.draw(&part.mesh, &thing, &RenderState { front_face, load, ..state });
+                load = LoadOp::Load;
+            }
+        }
+    }
+}
+
+fn draw_board(canvas: &mut Canvas, view: &View, stood: &[(DMat4, Vec<Ball>)]) {
+    let balls = stood.iter().flat_map(|(_, balls)| balls.clone()).collect();
+    let board = Board { view: view.clone(), texture: MipMaps::new(&squares()), balls };
+    let far = 60.0;
+    let corners = vec![[-far, -far], [far, -far], [far, far], [-far, far]];
+    let state = RenderState {
+        merge: Merge { blend: Blend::SourceOver, ..Merge::default() },
+        ..RenderState::default()
+    };
+    canvas.draw(&Mesh::indexed(corners, vec![0, 1, 2, 0, 2, 3]).expect("two triangles"), &board, &state);
+}
