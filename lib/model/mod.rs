@@ -85,7 +85,7 @@ pub enum NormalStyle {
 impl Model {
     /// Reads an OBJ file, and the material libraries and textures that it names.
     ///
-    /// `progress` is told how many bytes of how many have been read.
+    /// `progress` receives how many bytes of how many have been read.
     ///
     /// # Errors
     /// If the file cannot be read, is no OBJ file, has no triangles, or has coordinates that are not finite. What is
@@ -93,10 +93,10 @@ impl Model {
     pub fn load(
         path: &Path,
         style: NormalStyle,
-        progress: impl FnMut(u64, u64),
+        mut progress: impl FnMut(u64, u64),
     ) -> Result<(Self, Warnings), FileError> {
         let bytes = read_file(path)?;
-        Self::parse_with_progress(&bytes, path, style, progress)
+        Self::parse_with_progress(&bytes, path, style, &mut progress)
     }
 
     /// Reads the text of an OBJ file; `path` says where it stands, for the files that it names and for errors.
@@ -104,14 +104,14 @@ impl Model {
     /// # Errors
     /// As [`Model::load`].
     pub fn parse(bytes: &[u8], path: &Path, style: NormalStyle) -> Result<(Self, Warnings), FileError> {
-        Self::parse_with_progress(bytes, path, style, |_, _| {})
+        Self::parse_with_progress(bytes, path, style, &mut |_, _| {})
     }
 
     fn parse_with_progress(
         bytes: &[u8],
         path: &Path,
         style: NormalStyle,
-        progress: impl FnMut(u64, u64),
+        progress: &mut dyn FnMut(u64, u64),
     ) -> Result<(Self, Warnings), FileError> {
         let failure = |cause: String| FileError::new(path, cause);
         check_text(bytes).map_err(failure)?;

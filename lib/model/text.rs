@@ -140,13 +140,14 @@ struct Ahead {
     line: u32,
 }
 
-/// An OBJ file as a reader of plain text. `progress` is told how many bytes of how many have been read.
-pub(super) struct PlainText<'a, F> {
+/// An OBJ file as a reader of plain text. `progress` receives how many bytes of how many have been read; it is no type
+/// parameter, so that this room and the parser are compiled once.
+pub(super) struct PlainText<'a> {
     statements: Statements<'a>,
     total: usize,
-    progress: F,
-    /// Of how many bytes `progress` was told.
-    told: usize,
+    progress: &'a mut dyn FnMut(u64, u64),
+    /// How many bytes were reported to `progress`.
+    reported: usize,
     /// The plain text of one statement, and how much of it has been read.
     plain: Vec<u8>,
     read: usize,
@@ -164,13 +165,13 @@ pub(super) struct PlainText<'a, F> {
     found: Found,
 }
 
-impl<'a, F: FnMut(u64, u64)> PlainText<'a, F> {
-    pub(super) fn new(text: &'a [u8], progress: F) -> Self {
+impl<'a> PlainText<'a> {
+    pub(super) fn new(text: &'a [u8], progress: &'a mut dyn FnMut(u64, u64)) -> Self {
         Self {
             statements: Statements::new(text),
             total: text.len(),
             progress,
-            told: 0,
+            reported: 0,
             plain: Vec::new(),
             read: 0,
             line: 0,
@@ -206,8 +207,8 @@ impl<'a, F: FnMut(u64, u64)> PlainText<'a, F> {
             self.take(&statement)?;
         }
         let done = self.total - self.statements.bytes_left();
-        if done - self.told >= 1 << 16 || done == self.total {
-            self.told = done;
+        if done - self.reported >= 1 << 16 || done == self.total {
+            self.reported = done;
             (self.progress)(done as u64, self.total as u64);
         }
         Ok(())
@@ -488,7 +489,7 @@ fn with_less(corner: &[u8], common: Given) -> Vec<u8> {
     plain
 }
 
-impl<F: FnMut(u64, u64)> Read for PlainText<'_, F> {
+impl Read for PlainText<'_> {
     fn read(&mut self, buffer: &mut [u8]) -> IoResult<usize> {
         let available = self.fill_buf()?;
         let count = available.len().min(buffer.len());
@@ -499,7 +500,7 @@ impl<F: FnMut(u64, u64)> Read for PlainText<'_, F> {
 }
 
 /// One statement at a time, so that where the parser stops is where the fault is.
-impl<F: FnMut(u64, u64)> BufRead for PlainText<'_, F> {
+impl BufRead for PlainText<'_> {
     fn fill_buf(&mut self) -> IoResult<&[u8]> {
         if self.read == self.plain.len()
             && let Err(fault) = self.advance()
@@ -524,7 +525,8 @@ mod tests {
     }
 
     fn plain_within(text: &str, left: u32) -> Result<(String, Found), String> {
-        let mut reader = PlainText { left, ..PlainText::new(text.as_bytes(), |_, _| {}) };
+        let mut progress = |_, _| {};
+        let mut reader = PlainText { left, ..PlainText::new(text.as_bytes(), &mut progress) };
         let mut plain = String::new();
         let read = reader.read_to_string(&mut plain).map_err(|_| tobj::LoadError::ReadError);
         reader.finish(read).map(|(_, found)| (plain, found))
