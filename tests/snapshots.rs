@@ -105,7 +105,7 @@ fn review_page() -> std::io::Result<String> {
     );
     let _ = writeln!(
         summary,
-        "If all new pictures are right, accept them, then look at what git diff --stat says:"
+        "If all new pictures are right, accept them, then look at what git status --short says:"
     );
     let _ = writeln!(summary, "    {ACCEPT_ALL}");
     Ok(summary)

@@ -114,7 +114,7 @@ def check_log(folder):
     check(f"{PIXEL}: 2 of 307200 pixels differ" in log, log)
     check("(200, 200) was [255, 128, 0], is [255, 0, 0]" in log, log)
     check("the size was (200, 100) and is" in log, log)
-    for general in ["INSTA_UPDATE=always", "review.html", "report.png", "git diff"]:
+    for general in ["INSTA_UPDATE=always", "review.html", "report.png", "git status"]:
         equal((general, log.count(general)), (general, 1))
     found = re.search(r"^(\d+) pictures to review: (.+)$", log, re.MULTILINE)
     check(found and int(found[1]) == len(KINDS), log)
