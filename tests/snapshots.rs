@@ -11,35 +11,116 @@ mod pictures;
 mod review;
 
 use std::collections::BTreeSet;
-use std::path::Path;
+use std::fmt::Write as _;
 use std::process::{Command, ExitCode};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use chapters::CHAPTERS;
 use libtest_mimic::{Arguments, Failed, Trial};
+use pictures::Outcome;
 use rasterbook::figure::Mistake;
 
 fn main() -> ExitCode {
-    // A failed comparison is told once, by its test.
+    // A failed comparison is reported once, by its test.
     std::panic::set_hook(Box::new(|_| {}));
-    let mut trials: Vec<Trial> = all_pictures().map(Picture::trial).collect();
+    let arguments = Arguments::from_args();
+    let accepted = Arc::new(Accepted::default());
+    let mut trials: Vec<Trial> = all_pictures().map(|picture| picture.trial(Arc::clone(&accepted))).collect();
     trials.push(Trial::test("no_snapshot_without_a_variant", no_orphan));
-    let conclusion = libtest_mimic::run(&Arguments::from_args(), trials);
-    if let Some(page) = review::write_page(&pictures::failure_folder()) {
-        eprintln_page(&page);
+    let conclusion = libtest_mimic::run(&arguments, trials);
+    if arguments.list {
+        return conclusion.exit_code();
+    }
+    match review_page() {
+        Ok(page) => eprint_summary(&(accepted.summary() + &page)),
+        Err(error) => eprint_summary(&format!("The page for the review cannot be written: {error}\n")),
     }
     conclusion.exit_code()
 }
 
 #[expect(clippy::print_stderr, reason = "the report of a test program")]
-fn eprintln_page(page: &Path) {
-    eprintln!("All pictures that wait for a review: {}", page.display());
+fn eprint_summary(summary: &str) {
+    eprint!("{summary}");
+}
+
+/// How many pictures this run has accepted.
+#[derive(Default)]
+struct Accepted {
+    replaced: AtomicUsize,
+    added: AtomicUsize,
+}
+
+impl Accepted {
+    fn count(&self, outcome: Outcome) {
+        match outcome {
+            Outcome::Equal | Outcome::Waiting => {}
+            Outcome::Replaced => _ = self.replaced.fetch_add(1, Ordering::Relaxed),
+            Outcome::Added => _ = self.added.fetch_add(1, Ordering::Relaxed),
+        }
+    }
+
+    /// How many were accepted and where to look; empty if none were.
+    fn summary(&self) -> String {
+        let [replaced, added] = [&self.replaced, &self.added].map(|count| count.load(Ordering::Relaxed));
+        if replaced + added == 0 {
+            return String::new();
+        }
+        let folder = pictures::snapshot_folder();
+        format!(
+            "Accepted: {} replaced, {added} added, in {folder}\n\
+             Look at each of them before you commit. Their names: git status --short {folder}\n",
+            numbered(replaced, "picture"),
+            folder = folder.display()
+        )
+    }
+}
+
+/// A number of things, such as `1 picture` or `2 pictures`.
+fn numbered(count: usize, thing: &str) -> String {
+    format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
+}
+
+/// How one accepts all pictures, in the shell of this system.
+const ACCEPT_ALL: &str = if cfg!(windows) {
+    "$env:INSTA_UPDATE=\"always\"; cargo test --test snapshots; Remove-Item Env:INSTA_UPDATE"
+} else {
+    "INSTA_UPDATE=always cargo test --test snapshots"
+};
+
+/// Writes the page of all pictures that wait for a review, and says how to go on; empty if none waits.
+fn review_page() -> std::io::Result<String> {
+    let drawn: Vec<Picture> = all_pictures().collect();
+    pictures::forget_others(&drawn.iter().map(|picture| picture.name.as_str()).collect());
+    let failures = pictures::failures();
+    let entries: Vec<review::Entry> = drawn.iter().map(Picture::entry).collect();
+    let folder = pictures::failure_folder();
+    let Some(page) = review::write_page(&folder, &failures, &entries)? else {
+        return Ok(String::new());
+    };
+    let mut summary = format!("{} to review: {}\n", numbered(failures.len(), "picture"), page.display());
+    let _ = writeln!(
+        summary,
+        "Of each that changed, NAME.report.png in that folder is expected | difference | actual."
+    );
+    let _ = writeln!(
+        summary,
+        "If all new pictures are right, accept them, then look at what git status --short says:"
+    );
+    let _ = writeln!(summary, "    {ACCEPT_ALL}");
+    Ok(summary)
 }
 
 /// A picture that some program can draw.
 #[derive(Clone)]
 struct Picture {
+    /// The path of the program.
     program: &'static str,
+    /// The name of the program.
+    chapter: &'static str,
     variant: &'static str,
+    /// What to look for.
+    look: &'static str,
     frame: Option<u32>,
     /// Whether it is a mistake beside its remedy, and where they differ.
     is_comparison: bool,
@@ -57,7 +138,15 @@ fn all_pictures() -> impl Iterator<Item = Picture> {
             None => vec![None],
             Some(animation) => [0, animation.frames / 2, animation.frames - 1].map(Some).to_vec(),
         };
-        let picture = Picture { program, variant: variant.name, frame: None, is_comparison: false, name };
+        let picture = Picture {
+            program,
+            chapter: chapter.name,
+            variant: variant.name,
+            look: variant.look,
+            frame: None,
+            is_comparison: false,
+            name,
+        };
         let comparison = match variant.mistake {
             Mistake::RemediedBy(remedy) => {
                 let name = format!("{}--{remedy}", picture.name);
@@ -74,31 +163,53 @@ fn all_pictures() -> impl Iterator<Item = Picture> {
 }
 
 impl Picture {
-    fn trial(self) -> Trial {
+    fn trial(self, accepted: Arc<Accepted>) -> Trial {
         Trial::test(self.name.clone(), move || {
-            let png = self.draw()?;
-            pictures::assert_picture(&self.name, png).map_err(Failed::from)
+            let png = match self.draw() {
+                Ok(png) => png,
+                Err(reason) => {
+                    pictures::report_undrawn(&self.name, &format!("no new picture was drawn: {reason}"))?;
+                    return Err(reason.into());
+                }
+            };
+            accepted.count(pictures::assert_picture(&self.name, &png)?);
+            Ok(())
         })
     }
 
-    /// Runs the program as a reader would, and takes the file that it wrote.
-    fn draw(&self) -> Result<Vec<u8>, Failed> {
-        let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{}.png", self.name));
-        let mut command = Command::new(self.program);
-        command.arg(self.variant).arg("--out").arg(&file);
+    /// What follows the program's name on the command line, but for where to draw.
+    fn arguments(&self) -> Vec<String> {
+        let mut arguments = vec![self.variant.to_owned()];
         if let Some(frame) = self.frame {
-            command.arg("--frame").arg(frame.to_string());
+            arguments.extend(["--frame".to_owned(), frame.to_string()]);
         }
         if self.is_comparison {
-            command.arg("--compare");
+            arguments.push("--compare".to_owned());
         }
-        let output = command.output()?;
+        arguments
+    }
+
+    /// Runs the program as a reader would, and takes the file that it wrote.
+    fn draw(&self) -> Result<Vec<u8>, String> {
+        let file = pictures::drawing_folder().join(format!("{}.png", self.name));
+        let mut command = Command::new(self.program);
+        command.args(self.arguments()).arg("--out").arg(&file);
+        let output = command.output().map_err(|error| format!("{}: {error}", self.program))?;
         if !output.status.success() {
-            return Err(String::from_utf8_lossy(&output.stderr).into_owned().into());
+            return Err(String::from_utf8_lossy(&output.stderr).trim_end().to_owned());
         }
-        let png = std::fs::read(&file)?;
-        std::fs::remove_file(&file)?;
-        Ok(png)
+        let png = std::fs::read(&file).and_then(|png| std::fs::remove_file(&file).map(|()| png));
+        png.map_err(|error| format!("{}: {error}", file.display()))
+    }
+
+    fn entry(&self) -> review::Entry {
+        let command = format!("cargo run --bin {} -- {} --inspect", self.chapter, self.arguments().join(" "));
+        review::Entry {
+            name: self.name.clone(),
+            look: self.look,
+            // The pixels of a comparison belong to three pictures.
+            inspect: (!self.is_comparison).then_some(command),
+        }
     }
 }
 
@@ -111,6 +222,9 @@ fn no_orphan() -> Result<(), Failed> {
         let name = entry?.file_name().to_string_lossy().into_owned();
         let is_pending = name.contains(".snap.new");
         if !is_pending && !wanted.contains(&name) {
+            if let Some(picture) = name.strip_suffix(".snap.png") {
+                pictures::report_undrawn(picture, "no variant draws it: remove or rename it")?;
+            }
             orphans.push(name);
         }
     }
