@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
 use chapters::CHAPTERS;
+use rasterbook::program::PROGRAMS;
 
 /// An empty folder of its own for one test.
 fn folder(name: &str) -> PathBuf {
@@ -94,7 +95,7 @@ fn out_names_a_file_or_a_folder() {
         ("c.TGA", "c.TGA"),
         ("d.ppm", "d.ppm"),
         ("e", "e/affine.png"),
-        ("f.1", "f.1/affine.png"),
+        ("f.1/", "f.1/affine.png"),
     ] {
         let output = run_in(&folder, &["affine", "--out", path]);
         assert!(output.status.success(), "{}", text(&output.stderr));
@@ -242,7 +243,13 @@ fn what_makes_no_sense_is_refused() {
     refused("format_alone", &["--format", "json"], 2, "--inspect");
     refused("steps_and_overdraw", &["--steps", "--overdraw"], 2, "--overdraw");
     refused("steps_bmp", &["--steps", "--out", "a.bmp"], 2, ".gif or a .png");
-    refused("variant", &["afine"], 2, "no variant 'afine'; it has: floor, correct, affine");
+    refused(
+        "variant",
+        &["afine"],
+        2,
+        "no variant 'afine'; did you mean 'affine'?\nIt has: floor, correct, affine",
+    );
+    refused("variant_elsewhere", &["tearing"], 2, "ch09_pipeline has it");
     refused("option", &["--sise", "4x4"], 2, "--sise");
     refused("two", &["affine", "correct"], 2, "correct");
     refused("size", &["--size", "640"], 2, "640x480");
@@ -257,6 +264,7 @@ fn what_makes_no_sense_is_refused() {
     refused("unknown_other", &["affine", "--compare", "right"], 2, "no variant 'right'");
     refused("too_wide", &["affine", "--compare", "--size", "6000x10"], 2, "too wide");
     refused("format", &["--out", "x.jpg"], 2, ".png .bmp .tga .ppm");
+    refused("no_format", &["--out", "x.txt"], 2, "'.txt' is no picture format that is written");
     refused("list_and_more", &["affine", "--list"], 2, "--list");
 }
 
@@ -265,7 +273,7 @@ fn what_cannot_be_written_is_an_error_and_leaves_nothing() {
     let folder = folder("unwritable");
     std::fs::write(folder.join("file"), "in the way").expect("written");
     std::fs::create_dir(folder.join("folder.png")).expect("made");
-    for path in ["file/a.png", "file", "folder.png"] {
+    for path in ["file/a.png", "file"] {
         let output = run_in(&folder, &["--out", path]);
         let stderr = text(&output.stderr);
         assert_eq!(output.status.code(), Some(1), "{path}: {stderr}");
@@ -309,4 +317,39 @@ fn a_closed_pipe_ends_it_quietly() {
     let output = child.wait_with_output().expect("it ends");
     assert_eq!(text(&output.stderr), "");
     assert!(output.status.success());
+}
+
+#[test]
+fn every_program_knows_the_others() {
+    let known: Vec<_> = PROGRAMS.iter().map(|program| (program.name, program.question)).collect();
+    let expected: Vec<_> = CHAPTERS.iter().map(|(chapter, _)| (chapter.name, chapter.question)).collect();
+    assert_eq!(known, expected);
+    for (program, (chapter, _)) in PROGRAMS.iter().zip(CHAPTERS) {
+        let names: Vec<_> = chapter.variants.iter().map(|variant| variant.name).collect();
+        assert_eq!(program.variants, names, "{}", program.name);
+    }
+}
+
+#[test]
+fn a_version_and_standard_output() {
+    let folder = folder("stdout");
+    let output = run_in(&folder, &["--version"]);
+    let version = concat!("ch05_perspective_correct ", env!("CARGO_PKG_VERSION"), "\n");
+    assert_eq!(text(&output.stdout), version);
+    let output = run_in(&folder, &["affine", "--out", "-", "--size", "40x30"]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let picture = image::load_from_memory(&output.stdout).expect("a picture on standard output");
+    assert_eq!((picture.width(), picture.height()), (40, 30));
+    assert!(files(&folder).is_empty(), "nothing is written");
+}
+
+#[test]
+fn pixels_of_a_zoomed_picture_are_found_again() {
+    let folder = folder("zoomed");
+    let output = run_in(&folder, &["affine", "--zoom", "16@60,120"]);
+    assert_eq!(text(&output.stdout).trim_end(), "out/ch05_perspective_correct/affine-zoom16-at-60-120.png");
+    assert_eq!(
+        text(&output.stderr).trim_end(),
+        "shown: columns 20 to 99 and rows 90 to 149, y up, each pixel as 16×16"
+    );
 }

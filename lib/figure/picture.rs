@@ -22,7 +22,8 @@ impl Zoom {
     const SHOWN: (u32, u32) = (1280, 960);
 
     /// The part of a picture that is shown: around the center, moved so that it lies inside the picture.
-    fn part(self, whole: Rect) -> Rect {
+    #[must_use]
+    pub fn part(self, whole: Rect) -> Rect {
         let range = |center: Option<i32>, side: i32, shown: u32| {
             let count = if self.factor == 1 { side } else { side.min((shown / self.factor) as i32) };
             let first = (center.unwrap_or(side / 2) - count / 2).clamp(0, side - count);

@@ -220,7 +220,8 @@ impl Steps {
         }
         let line = |(i, total): (usize, &usize)| {
             let more = if i + 1 == HEAT.len() { " or more" } else { "" };
-            format!("{i}{more}: {} ({total} pixels)", HEAT[i].1)
+            let pixels = if *total == 1 { "pixel" } else { "pixels" };
+            format!("{i}{more}: {} ({total} {pixels})", HEAT[i].1)
         };
         let title = "How often each pixel was written:".to_owned();
         (picture, std::iter::once(title).chain(totals.iter().enumerate().map(line)).collect())

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 
+use super::programs::PROGRAMS;
 use crate::figure::picture::Zoom;
 use crate::figure::{Chapter, Mistake, RasterizerChoice, Variant};
 use crate::framebuffer::Framebuffer;
@@ -94,14 +95,20 @@ fn comparison(matches: &ArgMatches) -> Option<Comparison> {
 }
 
 fn command(chapter: &Chapter) -> Command {
-    let after =
-        format!("Variants:\n{}\nWritten files are printed on standard output, a line each.", list(chapter));
+    let others = PROGRAMS.iter().filter(|program| program.name != chapter.name);
+    let others: String =
+        others.map(|program| format!("  {:24} {}\n", program.name, program.question)).collect();
+    let after = format!(
+        "Variants:\n{}\nOther programs (cargo run --bin NAME):\n{others}\n\
+         Written files are printed on standard output, a line each.",
+        list(chapter)
+    );
     Command::new(chapter.name)
         .about(chapter.question)
         .override_usage(format!("cargo run --bin {} -- [VARIANT] [OPTIONS]", chapter.name))
         .after_help(after)
         .max_term_width(100)
-        .disable_version_flag(true)
+        .version(env!("CARGO_PKG_VERSION"))
         .args(what_to_draw(chapter))
         .args(how_to_draw(chapter))
         .args(subject(chapter))
@@ -187,7 +194,7 @@ fn rasterizer(chapter: &Chapter) -> Arg {
 
 fn how_to_draw(chapter: &Chapter) -> [Arg; 6] {
     let out = format!(
-        "A file (.png .bmp .tga .ppm; animations .gif .png) or a folder [default: out/{}]",
+        "A file (.png .bmp .tga .ppm; animations .gif .png), a folder, or - for a PNG on standard output [default: out/{}]",
         chapter.name
     );
     let zoom = "Draw each pixel as N×N, around the pixel (X, Y), y up from the bottom; from 8 on with a grid";

@@ -8,6 +8,8 @@ mod arguments;
 mod failure;
 mod output;
 mod palette;
+mod programs;
 mod run;
 
 pub use failure::Failure;
+pub use programs::{PROGRAMS, Program};

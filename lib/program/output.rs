@@ -10,9 +10,6 @@ use super::failure::Failure;
 use crate::framebuffer::Framebuffer;
 use crate::save::{encode, replace};
 
-/// Image formats that are often asked for and not written here.
-const UNSUPPORTED: [&str; 7] = ["jpg", "jpeg", "webp", "tif", "tiff", "svg", "pdf"];
-
 /// Where the pictures of one run go.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Destination {
@@ -20,48 +17,66 @@ pub(super) enum Destination {
     File(PathBuf),
     /// Any number of pictures, as PNG files named for their variants.
     Folder(PathBuf),
+    /// A single picture, as a PNG file on standard output.
+    Output,
 }
 
 impl Destination {
-    /// `--out PATH`: a file if it ends in a known image extension, else a folder.
+    /// `--out PATH`: `-` is standard output; a folder is what exists as one, ends in `/`, or has no extension; else the
+    /// extension must be that of a picture.
     pub(super) fn new(path: PathBuf) -> Result<Self, Failure> {
+        let ends_as_folder = path.as_os_str().to_string_lossy().ends_with(std::path::is_separator);
+        if path.as_os_str() == "-" {
+            return Ok(Self::Output);
+        }
         match extension(&path).as_deref() {
+            _ if ends_as_folder || path.is_dir() => Ok(Self::Folder(path)),
+            None => Ok(Self::Folder(path)),
             Some("png" | "bmp" | "tga" | "ppm" | "gif") => Ok(Self::File(path)),
-            Some(other) if UNSUPPORTED.contains(&other) => Err(Failure::Usage(format!(
-                "cannot write {}: the formats are .png .bmp .tga .ppm, of animations .gif .png",
+            Some(other) => Err(Failure::Usage(format!(
+                "cannot write {}: '.{other}' is no picture format that is written; these are .png .bmp .tga .ppm, of \
+                 animations .gif .png (a folder ends in /)",
                 path.display()
             ))),
-            _ => Ok(Self::Folder(path)),
         }
     }
 
-    /// Where the picture called `name` goes.
-    fn path(&self, name: &str, extension: &str) -> PathBuf {
+    /// Whether only one picture can go there.
+    pub(super) const fn is_single(&self) -> bool {
+        matches!(self, Self::File(_) | Self::Output)
+    }
+
+    /// Where the picture called `name` goes; `None` for standard output.
+    fn path(&self, name: &str, extension: &str) -> Option<PathBuf> {
         match self {
-            Self::File(path) => path.clone(),
-            Self::Folder(folder) => folder.join(format!("{name}.{extension}")),
+            Self::File(path) => Some(path.clone()),
+            Self::Folder(folder) => Some(folder.join(format!("{name}.{extension}"))),
+            Self::Output => None,
         }
     }
 
-    /// Writes the picture called `name`, and says where.
-    pub(super) fn write(&self, name: &str, picture: &Framebuffer) -> Result<PathBuf, Failure> {
-        let path = self.path(name, "png");
+    /// Writes the picture called `name`, and prints where it is.
+    pub(super) fn write(&self, name: &str, picture: &Framebuffer) -> Result<(), Failure> {
+        let Some(path) = self.path(name, "png") else {
+            let bytes = encode(picture, ImageFormat::Png)
+                .map_err(|error| Failure::Runtime(format!("cannot write to standard output: {error}")))?;
+            return put(&bytes);
+        };
         if extension(&path).as_deref() == Some("gif") {
             return Err(Failure::Usage(format!("{} is for an animation: give --animate", path.display())));
         }
         let format = ImageFormat::from_path(&path).unwrap_or(ImageFormat::Png);
         let bytes = encode(picture, format).map_err(|error| cannot_write(&path, &error))?;
-        replace_file(&path, &bytes)?;
-        Ok(path)
+        replace_file(&path, &bytes)
     }
 
-    /// Writes the animation called `name`, as `encode` makes it for the format, and says where.
+    /// Writes the animation called `name`, as `encode` makes it for the format, and prints where it is.
     pub(super) fn write_animation(
         &self,
         name: &str,
         encode: impl FnOnce(AnimationFormat) -> Result<Vec<u8>, Box<dyn Error>>,
-    ) -> Result<PathBuf, Failure> {
-        let path = self.path(name, "gif");
+    ) -> Result<(), Failure> {
+        let path = self.path(name, "gif").unwrap_or_else(|| PathBuf::from("-"));
         let format = match extension(&path).as_deref() {
             Some("gif") => AnimationFormat::Gif,
             Some("png") => AnimationFormat::Png,
@@ -73,8 +88,7 @@ impl Destination {
             }
         };
         let bytes = encode(format).map_err(|error| cannot_write(&path, error.as_ref()))?;
-        replace_file(&path, &bytes)?;
-        Ok(path)
+        replace_file(&path, &bytes)
     }
 }
 
@@ -92,8 +106,10 @@ fn extension(path: &Path) -> Option<String> {
     path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase)
 }
 
+/// Writes a whole file or nothing, and prints its path.
 fn replace_file(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    replace(path, bytes).map_err(|error| Failure::Runtime(format!("cannot write {error}")))
+    replace(path, bytes).map_err(|error| Failure::Runtime(format!("cannot write {error}")))?;
+    say(&path.display().to_string())
 }
 
 fn cannot_write(path: &Path, error: &dyn Error) -> Failure {
@@ -102,12 +118,13 @@ fn cannot_write(path: &Path, error: &dyn Error) -> Failure {
 
 /// A line on standard output.
 pub(super) fn say(line: &str) -> Result<(), Failure> {
+    put(format!("{line}\n").as_bytes())
+}
+
+/// Bytes on standard output.
+fn put(bytes: &[u8]) -> Result<(), Failure> {
     let mut stdout = std::io::stdout().lock();
-    let said = stdout
-        .write_all(line.as_bytes())
-        .and_then(|()| stdout.write_all(b"\n"))
-        .and_then(|()| stdout.flush());
-    said.map_err(|error| match error.kind() {
+    stdout.write_all(bytes).and_then(|()| stdout.flush()).map_err(|error| match error.kind() {
         ErrorKind::BrokenPipe => Failure::ClosedPipe,
         _ => Failure::Runtime(format!("cannot write to standard output: {error}")),
     })
@@ -128,7 +145,10 @@ mod tests {
         assert_eq!(of("a/b.png"), Ok(Destination::File("a/b.png".into())));
         assert_eq!(of("b.TGA"), Ok(Destination::File("b.TGA".into())));
         assert_eq!(of("pictures"), Ok(Destination::Folder("pictures".into())));
-        assert_eq!(of("v1.2"), Ok(Destination::Folder("v1.2".into())));
+        assert_eq!(of("v1.2/"), Ok(Destination::Folder("v1.2/".into())));
+        assert_eq!(of("src/.."), Ok(Destination::Folder("src/..".into())));
+        assert_eq!(of("-"), Ok(Destination::Output));
+        assert!(matches!(of("v1.2"), Err(Failure::Usage(_))));
         assert!(matches!(of("a.jpg"), Err(Failure::Usage(_))));
     }
 }

@@ -10,6 +10,7 @@ use super::animation::{encode, progress_bar};
 use super::arguments::{Comparison, Format, Request, list};
 use super::failure::Failure;
 use super::output::{Destination, note, say};
+use super::programs::PROGRAMS;
 use crate::figure::picture::{Zoom, difference, side_by_side, zoomed};
 use crate::figure::{Chapter, DrawOptions, Mistake, RasterizerChoice, Subject, Variant};
 use crate::files::{FileError, load_texture, shown};
@@ -55,7 +56,7 @@ fn run(chapter: &Chapter, request: &Request) -> Result<(), Failure> {
     let default = || PathBuf::from("out").join(chapter.name);
     let destination = Destination::new(request.out.clone().unwrap_or_else(default))?;
     if request.all {
-        if matches!(destination, Destination::File(_)) && chapter.variants.len() > 1 {
+        if destination.is_single() && chapter.variants.len() > 1 {
             return Err(Failure::Usage("--all draws several pictures: --out must name a folder".to_owned()));
         }
         return chapter.variants.iter().try_for_each(|variant| draw_one(variant, request, &destination));
@@ -99,10 +100,25 @@ fn hints(chapter: &Chapter) -> String {
 }
 
 fn find<'a>(chapter: &'a Chapter, name: &str) -> Result<&'a Variant, Failure> {
-    chapter.find(name).ok_or_else(|| {
-        let names: Vec<&str> = chapter.variants.iter().map(|variant| variant.name).collect();
-        Failure::Usage(format!("{} has no variant '{name}'; it has: {}", chapter.name, names.join(", ")))
-    })
+    chapter.find(name).ok_or_else(|| Failure::Usage(no_such_variant(chapter, name)))
+}
+
+/// What is said of a name that no variant has: what may be meant, here or in another program, and what there is.
+fn no_such_variant(chapter: &Chapter, name: &str) -> String {
+    let names: Vec<&str> = chapter.variants.iter().map(|variant| variant.name).collect();
+    let likeness = |known: &&str| strsim::jaro(name, known);
+    let nearest = names.iter().copied().max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
+    let others: Vec<&str> = PROGRAMS
+        .iter()
+        .filter(|program| program.variants.contains(&name))
+        .map(|program| program.name)
+        .collect();
+    let hint = match nearest.filter(|nearest| strsim::jaro(name, nearest) > 0.8) {
+        _ if !others.is_empty() => format!("; {} has it", others.join(" and ")),
+        Some(nearest) => format!("; did you mean '{nearest}'?"),
+        None => String::new(),
+    };
+    format!("{} has no variant '{name}'{hint}\nIt has: {}", chapter.name, names.join(", "))
 }
 
 /// The variant to compare with.
@@ -270,7 +286,10 @@ fn check_inside((width, height): (u32, u32), (x, y): Pixel) -> Result<(), Failur
 fn name_of(variant: &Variant, request: &Request) -> String {
     let frame = request.frame.map_or_else(String::new, |frame| format!("@{frame:03}"));
     let rasterizer = request.rasterizer.map_or_else(String::new, |choice| format!("-{}", choice.name()));
-    let zoom = request.zoom.map_or_else(String::new, |zoom| format!("-zoom{}", zoom.factor));
+    let zoom = request.zoom.map_or_else(String::new, |zoom| {
+        let place = zoom.center.map_or_else(String::new, |(x, y)| format!("-at-{x}-{y}"));
+        format!("-zoom{}{place}", zoom.factor)
+    });
     format!("{}{frame}{rasterizer}{zoom}", variant.name)
 }
 
@@ -278,8 +297,22 @@ fn draw_one(variant: &Variant, request: &Request, destination: &Destination) -> 
     let frame = frame_of(variant, request)?;
     let job = Job::new(variant, request, &Given::load(request, &[variant])?)?;
     let picture = enlarged(job.draw(frame), request.zoom);
-    let path = destination.write(&name_of(variant, request), &picture)?;
-    say(&path.display().to_string())
+    destination.write(&name_of(variant, request), &picture)?;
+    if let Some(zoom) = request.zoom {
+        note(&shown_by(zoom, job.size));
+    }
+    Ok(())
+}
+
+/// Which pixels a zoomed picture shows, so that one that is seen can be found again.
+fn shown_by(zoom: Zoom, (width, height): (u32, u32)) -> String {
+    let Rect { left, bottom, right, top } = zoom.part(Rect::sized(width, height));
+    let factor = zoom.factor;
+    format!(
+        "shown: columns {left} to {} and rows {bottom} to {}, y up, each pixel as {factor}×{factor}",
+        right - 1,
+        top - 1
+    )
 }
 
 fn animate(variant: &Variant, request: &Request, destination: &Destination) -> Result<(), Failure> {
@@ -288,9 +321,7 @@ fn animate(variant: &Variant, request: &Request, destination: &Destination) -> R
     };
     let job = Job::new(variant, request, &Given::load(request, &[variant])?)?;
     let draw = |frame| enlarged(job.draw(frame), request.zoom);
-    let path =
-        destination.write_animation(&name_of(variant, request), |format| encode(format, animation, &draw))?;
-    say(&path.display().to_string())
+    destination.write_animation(&name_of(variant, request), |format| encode(format, animation, &draw))
 }
 
 /// Prints the history of a pixel; nothing is written but text.
@@ -316,17 +347,15 @@ fn draw_recorded(variant: &Variant, request: &Request, destination: &Destination
     let frame = frame_of(variant, request)?;
     let job = Job::new(variant, request, &Given::load(request, &[variant])?)?;
     let steps = Steps::new(variant, &job.options(frame));
-    let path = if request.steps {
+    if request.steps {
         let draw = |number| enlarged(steps.frame(number), request.zoom);
         let name = format!("{}-steps", name_of(variant, request));
-        destination.write_animation(&name, |format| encode(format, steps.animation(), &draw))?
-    } else {
-        let (heat, legend) = steps.overdraw();
-        note(&legend.join("\n"));
-        let name = format!("{}-overdraw", name_of(variant, request));
-        destination.write(&name, &enlarged(heat, request.zoom))?
-    };
-    say(&path.display().to_string())
+        return destination.write_animation(&name, |format| encode(format, steps.animation(), &draw));
+    }
+    let (heat, legend) = steps.overdraw();
+    note(&legend.join("\n"));
+    let name = format!("{}-overdraw", name_of(variant, request));
+    destination.write(&name, &enlarged(heat, request.zoom))
 }
 
 fn draw_comparison(
@@ -348,9 +377,9 @@ fn draw_comparison(
     let picture = side_by_side(&panels).ok_or_else(|| {
         Failure::Usage("three such pictures are too wide: give a smaller --size".to_owned())
     })?;
-    let path = destination.write(&format!("{}--{}", name_of(this, request), that.name), &picture)?;
+    destination.write(&format!("{}--{}", name_of(this, request), that.name), &picture)?;
     note(&format!("{count} of {total} pixels differ"));
-    say(&path.display().to_string())
+    Ok(())
 }
 
 #[cfg(test)]
@@ -360,7 +389,7 @@ mod tests {
     fn nothing(_: &mut Framebuffer) {}
 
     #[test]
-    fn hints_for_a_newcomer() {
+    fn hints_for_a_newcomer_and_for_a_wrong_name() {
         const RIGHT: Variant = Variant::new("right", nothing, "what is right").size(640, 480);
         const WRONG: Variant = Variant::new("wrong", nothing, "what is wrong").remedied_by("right");
         let with_mistake = Chapter { name: "ch00", question: "?", variants: &[RIGHT, WRONG] };
@@ -370,6 +399,15 @@ mod tests {
              A mistake beside its remedy: cargo run --bin ch00 -- wrong --compare\n\
              What happened at a pixel: cargo run --bin ch00 -- right --inspect 320,240"
         );
+        assert_eq!(
+            no_such_variant(&with_mistake, "wring"),
+            "ch00 has no variant 'wring'; did you mean 'wrong'?\nIt has: right, wrong"
+        );
+        assert_eq!(
+            no_such_variant(&with_mistake, "camera"),
+            "ch00 has no variant 'camera'; ch10_matrices_lighting has it\nIt has: right, wrong"
+        );
+        assert_eq!(no_such_variant(&with_mistake, "x"), "ch00 has no variant 'x'\nIt has: right, wrong");
         let without = Chapter { variants: &[RIGHT], ..with_mistake };
         assert!(hints(&without).contains("\nWhat else can be drawn: cargo run --bin ch00 -- --list\n"));
     }
