@@ -24,16 +24,16 @@ pub(crate) const CHAPTER: Chapter = Chapter {
     variants: &[
         Variant::with_pipeline("blended", blended, "translucent triangles over a checkered wall: source-over on the left, where order matters; additive on the right"),
         Variant::with_pipeline("vbo", vbo, "chapter 8's triangle from a vertex buffer, through the whole pipeline: the same picture").source("section 9.2"),
-        Variant::with_pipeline("cull-ccw", cull_ccw, "two triangles, the back culled: the counter-clockwise one is left").source("section 9.3"),
+        Variant::with_pipeline("cull-ccw", cull_ccw, "two triangles, the back culled: the counter-clockwise one is left, which is the picture 'vbo'").source("section 9.3"),
         Variant::with_pipeline("cull-cw", cull_cw, "the same with clockwise as the front, the back culled: the clockwise one is left").source("section 9.3"),
         Variant::with_pipeline("cull-none", cull_none, "the same, nothing culled: both").source("section 9.3"),
         Variant::with_pipeline("uncleared", uncleared, "five frames of a moving triangle, nothing cleared between them: the old ones stay").source("section 9.4.1, Figure 9-8").remedied_by("cleared"),
         Variant::with_pipeline("cleared", cleared, "the fifth of these frames, color and depth cleared before it").source("section 9.4.1"),
-        Variant::with_pipeline("double-buffer", double_buffer, "the near plane comes closer by 0.01 a frame, and the triangle shrinks; no frame is seen half drawn")
+        Variant::with_pipeline("double-buffer", double_buffer, "the near plane comes closer by 0.01 a frame, and the triangle of 'vbo' shrinks; no frame is seen half drawn")
             .animated(FLIGHT)
             .source("section 9.4.2"),
         Variant::with_pipeline("tearing", tearing, "one buffer, seen while it is drawn: the new picture in the lower half, the old one above it").source("section 9.4.2").remedied_by("presented"),
-        Variant::with_pipeline("presented", presented, "two buffers, seen at the same moment: the old picture, whole").source("section 9.4.2, Figure 9-9"),
+        Variant::with_pipeline("presented", presented, "two buffers, seen at the same moment: the old picture, whole, which is the picture 'vbo'").source("section 9.4.2, Figure 9-9"),
         Variant::with_pipeline("indexed", indexed, "a hill of 49 vertices and 72 triangles; each vertex is shaded once, and up to six triangles share it"),
     ],
 };

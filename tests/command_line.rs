@@ -218,24 +218,25 @@ fn a_choice_of_rasterizers() {
         let program = env!("CARGO_BIN_EXE_ch09_pipeline");
         Command::new(program).args(arguments).current_dir(&folder).output().expect("the program starts")
     };
-    for name in ["scanline", "edge"] {
+    for name in ["scanline", "exact"] {
         let output = run(&["vbo", "--rasterizer", name, "--out", "x"]);
         assert!(output.status.success(), "{}", text(&output.stderr));
         assert!(folder.join(format!("x/vbo-{name}.png")).is_file());
     }
+    assert!(run(&["vbo", "--rasterizer", "edge", "--out", "x"]).status.success(), "as it was once called");
     let output = run(&["vbo", "--rasterizer", "edges"]);
     assert_eq!(output.status.code(), Some(2));
-    assert!(text(&output.stderr).contains("scanline, edge"));
+    assert!(text(&output.stderr).contains("scanline, exact"));
     // In the exact picture no pixel is written twice.
     let seams = text(&run(&["indexed", "--overdraw", "--rasterizer", "scanline"]).stderr);
-    let none = text(&run(&["indexed", "--overdraw", "--rasterizer", "edge"]).stderr);
+    let none = text(&run(&["indexed", "--overdraw", "--rasterizer", "exact"]).stderr);
     assert!(!seams.contains("2: yellow (0 pixels)") && !seams.is_empty(), "{seams}");
     assert!(none.contains("3: orange (0 pixels)"), "{none}");
 }
 
 #[test]
 fn what_makes_no_sense_is_refused() {
-    refused("rasterizer_early", &["affine", "--rasterizer", "edge"], 2, "does not use the pipeline");
+    refused("rasterizer_early", &["affine", "--rasterizer", "exact"], 2, "does not use the pipeline");
     refused("inspect_outside", &["--inspect", "640,0"], 2, "outside the picture of 640×480");
     refused("inspect_negative", &["--inspect", "-1,5"], 2, "outside");
     refused("inspect_words", &["--inspect", "here"], 2, "expected X,Y");

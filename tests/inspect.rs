@@ -39,7 +39,7 @@ fn what_is_reported_is_what_stands_in_the_picture_and_no_event_is_unknown() {
     rows.par_iter().for_each(|&(chapter, variant)| {
         let subject = variant.subject().expect("assets");
         let own = variant.options(subject.as_ref());
-        let both = [RasterizerChoice::Scanline, RasterizerChoice::Edge];
+        let both = [RasterizerChoice::Scanline, RasterizerChoice::Exact];
         let choices = variant.rasterizer.map_or(vec![own.rasterizer], |_| both.to_vec());
         for rasterizer in choices {
             let options = DrawOptions { rasterizer, ..own.clone() };

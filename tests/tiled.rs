@@ -403,7 +403,7 @@ fn every_variant_of_the_pipeline() {
             let picture =
                 |rasterizer| variant.draw(&DrawOptions { rasterizer, ..variant.options(subject.as_ref()) });
             let [scanline, edge, tiled] =
-                [RasterizerChoice::Scanline, RasterizerChoice::Edge, RasterizerChoice::Tiled].map(picture);
+                [RasterizerChoice::Scanline, RasterizerChoice::Exact, RasterizerChoice::Tiled].map(picture);
             let differ = |a: &Framebuffer, b: &Framebuffer, by: u8| {
                 a.rows_from_top()
                     .flatten()

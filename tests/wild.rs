@@ -16,7 +16,7 @@ fn folder(name: &str) -> PathBuf {
 
 fn run(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_ch10_matrices_lighting"))
-        .args(["lit", "--frame", "315", "--size", "64x48", "--rasterizer", "edge", "--out", "picture.png"])
+        .args(["lit", "--frame", "315", "--size", "64x48", "--rasterizer", "exact", "--out", "picture.png"])
         .args(arguments)
         .current_dir(folder)
         .output()
@@ -368,7 +368,7 @@ fn the_last_column_begins_anew_by_scanlines_alone() {
     };
     let [blue, yellow] = [[false, false, true], [true, true, false]];
     assert_eq!([color("scanline", 47), color("scanline", 48)], [yellow, blue], "u is 1 in column 48");
-    assert_eq!(color("edge", 47), yellow, "the last column: its center has a smaller u");
+    assert_eq!(color("exact", 47), yellow, "the last column: its center has a smaller u");
     // The pixel says so.
     let history = |column: u32| {
         let pixel = format!("{column},28");

@@ -20,7 +20,7 @@ pub enum RasterizerChoice {
     #[default]
     Scanline,
     /// The exact one in double precision, [`Exact`].
-    Edge,
+    Exact,
     /// The fast one, [`Tiled`]; while somebody observes, [`Exact`] in single precision, which draws the same.
     #[cfg(feature = "tiled")]
     Tiled,
@@ -30,7 +30,7 @@ impl RasterizerChoice {
     /// All of them.
     pub const ALL: &[Self] = &[
         Self::Scanline,
-        Self::Edge,
+        Self::Exact,
         #[cfg(feature = "tiled")]
         Self::Tiled,
     ];
@@ -40,14 +40,14 @@ impl RasterizerChoice {
     pub const FASTEST: Self = Self::Tiled;
     /// The fastest of them.
     #[cfg(not(feature = "tiled"))]
-    pub const FASTEST: Self = Self::Edge;
+    pub const FASTEST: Self = Self::Exact;
 
     /// How it is called on the command line.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Scanline => "scanline",
-            Self::Edge => "edge",
+            Self::Exact => "exact",
             #[cfg(feature = "tiled")]
             Self::Tiled => "tiled",
         }
@@ -87,7 +87,7 @@ impl Canvas {
         let aspect = f64::from(native.0) / f64::from(native.1);
         let drawing = match rasterizer {
             RasterizerChoice::Scanline => Drawing::Scanline(Target::like(framebuffer)),
-            RasterizerChoice::Edge => Drawing::Exact(Target::like(framebuffer)),
+            RasterizerChoice::Exact => Drawing::Exact(Target::like(framebuffer)),
             #[cfg(feature = "tiled")]
             RasterizerChoice::Tiled => Drawing::Tiled(Target::like(framebuffer), Tiled::new()),
         };

@@ -175,7 +175,7 @@ impl Variant {
     #[must_use]
     pub const fn exact(self) -> Self {
         assert!(self.rasterizer.is_some(), "only the pipeline has a choice of rasterizers");
-        Self { rasterizer: Some(RasterizerChoice::Edge), ..self }
+        Self { rasterizer: Some(RasterizerChoice::Exact), ..self }
     }
 
     /// The same, with the fast rasterizer, or with the exact one, which draws the same, where it is not built in.

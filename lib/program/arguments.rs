@@ -3,7 +3,7 @@
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 
 use super::programs::PROGRAMS;
@@ -178,10 +178,14 @@ fn what_to_tell() -> [Arg; 5] {
 
 /// Which rasterizer the pipeline ends with.
 fn rasterizer(chapter: &Chapter) -> Arg {
-    let names = RasterizerChoice::ALL.iter().map(|choice| choice.name());
+    // The exact rasterizer was once called by its method, edge functions: that name is still understood.
+    let names = RasterizerChoice::ALL.iter().map(|choice| match choice {
+        RasterizerChoice::Exact => PossibleValue::new(choice.name()).alias("edge"),
+        _ => PossibleValue::new(choice.name()),
+    });
     let parse = PossibleValuesParser::new(names).map(|name| {
         let named = RasterizerChoice::ALL.iter().find(|choice| choice.name() == name);
-        named.copied().unwrap_or_default()
+        named.copied().unwrap_or(RasterizerChoice::Exact)
     });
     option(
         "rasterizer",
