@@ -321,6 +321,19 @@ fn a_closed_pipe_ends_it_quietly() {
 }
 
 #[test]
+fn flat_normals_without_a_model_of_ones_own() {
+    let folder = folder("flat");
+    for arguments in [&["lit", "--out", "smooth.png"][..], &["lit", "--flat", "--out", "flat.png"]] {
+        let program = env!("CARGO_BIN_EXE_ch10_matrices_lighting");
+        let output = Command::new(program).args(arguments).current_dir(&folder).output().expect("it starts");
+        assert!(output.status.success(), "{}", text(&output.stderr));
+    }
+    let [smooth, flat] =
+        ["smooth.png", "flat.png"].map(|name| image::open(folder.join(name)).expect("written").to_rgb8());
+    assert!(smooth != flat, "every edge shows");
+}
+
+#[test]
 fn every_program_knows_the_others() {
     let known: Vec<_> = PROGRAMS.iter().map(|program| (program.name, program.question)).collect();
     let expected: Vec<_> = CHAPTERS.iter().map(|(chapter, _)| (chapter.name, chapter.question)).collect();

@@ -47,7 +47,15 @@ fn bytes_of(name: &str) -> Result<&'static [u8], FileError> {
 /// # Errors
 /// If there is no such model.
 pub fn model(name: &str) -> Result<Model, FileError> {
-    Model::parse(bytes_of(name)?, name.as_ref(), NormalStyle::Smooth).map(|(model, _)| model)
+    model_with(name, NormalStyle::Smooth)
+}
+
+/// The same with normals of a style.
+///
+/// # Errors
+/// If there is no such model.
+pub fn model_with(name: &str, style: NormalStyle) -> Result<Model, FileError> {
+    Model::parse(bytes_of(name)?, name.as_ref(), style).map(|(model, _)| model)
 }
 
 /// A texture of `assets/`, such as `bricks.png`.

@@ -4,6 +4,7 @@ use super::canvas::{Canvas, RasterizerChoice};
 use super::subject::Subject;
 use crate::files::FileError;
 use crate::framebuffer::Framebuffer;
+use crate::model::NormalStyle;
 use crate::observer::SharedObserver;
 use crate::probe::SharedProbe;
 
@@ -239,10 +240,20 @@ impl Variant {
     /// # Errors
     /// If the table names files that are not in `assets/`.
     pub fn subject(&self) -> Result<Option<Subject>, FileError> {
+        self.subject_with(NormalStyle::Smooth)
+    }
+
+    /// The same, the model with normals of a style.
+    ///
+    /// # Errors
+    /// As [`Self::subject`].
+    pub fn subject_with(&self, style: NormalStyle) -> Result<Option<Subject>, FileError> {
         match self.figure {
             Figure::Plain(_) | Figure::Canvas(_) => Ok(None),
             Figure::PlainModel(_, Assets { model, texture })
-            | Figure::Model(_, Assets { model, texture }) => Subject::of_assets(model, texture).map(Some),
+            | Figure::Model(_, Assets { model, texture }) => {
+                Subject::of_assets(model, texture, style).map(Some)
+            }
         }
     }
 

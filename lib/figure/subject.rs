@@ -3,7 +3,7 @@
 use super::assets;
 use crate::color::Color;
 use crate::files::FileError;
-use crate::model::{Model, Part};
+use crate::model::{Model, NormalStyle, Part};
 use crate::texture::Texture;
 
 /// What a picture is of: a model and how it is covered.
@@ -16,12 +16,12 @@ pub struct Subject {
 }
 
 impl Subject {
-    /// A model of `assets/` with a texture of `assets/`.
+    /// A model of `assets/`, with normals of a style and a texture of `assets/`.
     ///
     /// # Errors
     /// If there are no such files.
-    pub fn of_assets(model: &str, texture: &str) -> Result<Self, FileError> {
-        Ok(Self { model: assets::model(model)?, texture: Some(assets::texture(texture)?) })
+    pub fn of_assets(model: &str, texture: &str, style: NormalStyle) -> Result<Self, FileError> {
+        Ok(Self { model: assets::model_with(model, style)?, texture: Some(assets::texture(texture)?) })
     }
 
     /// The texture of a part: the one that was given, or its material's, or plain gray.

@@ -10,6 +10,7 @@ use super::programs::PROGRAMS;
 use crate::figure::picture::Zoom;
 use crate::figure::{Chapter, Mistake, RasterizerChoice, Variant};
 use crate::framebuffer::Framebuffer;
+use crate::model::NormalStyle;
 use crate::rect::Pixel;
 
 /// The most pixels that `--size` may ask for: a picture of 8192×8192.
@@ -89,6 +90,13 @@ impl Request {
     }
 }
 
+impl Request {
+    /// Which normals a model gets.
+    pub(super) const fn normal_style(&self) -> NormalStyle {
+        if self.flat { NormalStyle::Flat } else { NormalStyle::Smooth }
+    }
+}
+
 fn comparison(matches: &ArgMatches) -> Option<Comparison> {
     let mut names = matches.get_many::<String>("compare")?;
     Some(names.next().map_or(Comparison::Remedy, |name| Comparison::With(name.clone())))
@@ -147,7 +155,7 @@ fn subject(chapter: &Chapter) -> [Arg; 4] {
             .conflicts_with("all"),
         switch("as-is", "Leave the model where it is and as large as it is, not centered and scaled to fit")
             .requires("model"),
-        switch("flat", "Give the model the normals of its faces, so that every edge shows").requires("model"),
+        switch("flat", "Give the model the normals of its faces, so that every edge shows"),
     ]
     .map(|argument| argument.hide(is_hidden))
 }

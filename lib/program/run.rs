@@ -16,7 +16,7 @@ use crate::figure::{Chapter, DrawOptions, Mistake, RasterizerChoice, Subject, Va
 use crate::files::{FileError, load_texture, shown};
 use crate::framebuffer::Framebuffer;
 use crate::inspect::{Steps, history};
-use crate::model::{Model, NormalStyle};
+use crate::model::Model;
 use crate::rect::{Pixel, Rect};
 use crate::texture::Texture;
 
@@ -149,7 +149,7 @@ impl<'a> Job<'a> {
     fn new(variant: &'a Variant, request: &Request, given: &Given) -> Result<Self, Failure> {
         let size = request.size.unwrap_or(variant.size);
         check_zoom(size, request.zoom)?;
-        let own = variant.subject().map_err(runtime_failure)?;
+        let own = variant.subject_with(request.normal_style()).map_err(runtime_failure)?;
         let subject = own.map(|own| match &given.model {
             // The chapters' own models are where they should be, and have their own texture.
             None => Subject { texture: given.texture.clone().or(own.texture), ..own },
@@ -219,8 +219,7 @@ impl Given {
         let mut model = None;
         if let Some(path) = &request.model {
             let progress = progress_bar(0, "bytes");
-            let style = if request.flat { NormalStyle::Flat } else { NormalStyle::Smooth };
-            let loaded = Model::load(path, style, |read, total| {
+            let loaded = Model::load(path, request.normal_style(), |read, total| {
                 progress.set_length(total);
                 progress.set_position(read);
             });
