@@ -47,6 +47,27 @@ fn refused(name: &str, arguments: &[&str], code: i32, reason: &str) {
 }
 
 #[test]
+fn a_model_without_a_variant_is_drawn_by_the_first_that_can() {
+    let folder = folder("own_model");
+    let model = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets").join("cube.obj");
+    let model = model.to_str().expect("UTF-8");
+    // The leads of both draw none.
+    let programs = [
+        (env!("CARGO_BIN_EXE_ch02_triangles"), "facets"),
+        (env!("CARGO_BIN_EXE_ch10_matrices_lighting"), "lit"),
+    ];
+    for (program, variant) in programs {
+        let output =
+            Command::new(program).args(["--model", model]).current_dir(&folder).output().expect("it starts");
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        assert!(text(&output.stdout).ends_with(&format!("{variant}.png\n")), "{}", text(&output.stdout));
+    }
+    let output = run_in(&folder, &["--model", model]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).contains("'floor' draws no model"), "{}", text(&output.stderr));
+}
+
+#[test]
 fn one_command_one_picture() {
     let folder = folder("lead");
     let output = run_in(&folder, &[]);

@@ -247,7 +247,7 @@ mod tests {
     use super::*;
     use glam::dvec3;
 
-    /// The normals at each corner of each face; z is turned round, as on reading.
+    /// The normals at each corner of each face; z is negated, as on reading.
     fn smooth(positions: &[[f64; 3]], faces: &[&[usize]]) -> Vec<Vec<DVec3>> {
         let mut normals = SmoothNormals::default();
         let numbers: Vec<u32> = positions.iter().map(|&[x, y, z]| normals.number(dvec3(x, y, -z))).collect();

@@ -63,7 +63,7 @@ fn run(chapter: &Chapter, request: &Request) -> Result<(), Failure> {
     }
     let variant = match &request.variant {
         Some(name) => find(chapter, name)?,
-        None => chapter.lead(),
+        None => unnamed(chapter, request),
     };
     if let Some(pixel) = request.inspect {
         return inspect_pixel(chapter, variant, request, pixel);
@@ -76,7 +76,7 @@ fn run(chapter: &Chapter, request: &Request) -> Result<(), Failure> {
         None => {
             draw_one(variant, request, &destination)?;
             if request.variant.is_none() && std::io::stderr().is_terminal() {
-                note(&hints(chapter));
+                note(&hints(chapter, variant));
             }
             Ok(())
         }
@@ -86,9 +86,15 @@ fn run(chapter: &Chapter, request: &Request) -> Result<(), Failure> {
     }
 }
 
+/// The variant for those who have named none: the lead, or the first that can draw what was given instead of its own.
+fn unnamed<'a>(chapter: &'a Chapter, request: &Request) -> &'a Variant {
+    let accepts = |variant: &&Variant| check_model_options(variant, request).is_ok();
+    chapter.variants.iter().find(accepts).unwrap_or_else(|| chapter.lead())
+}
+
 /// For those who have named no variant: what is seen, what to compare it with, and how to ask a pixel.
-fn hints(chapter: &Chapter) -> String {
-    let Variant { name, look, size: (width, height), .. } = chapter.lead();
+fn hints(chapter: &Chapter, drawn: &Variant) -> String {
+    let Variant { name, look, size: (width, height), .. } = drawn;
     let run = format!("cargo run --bin {} --", chapter.name);
     let is_compared = |variant: &&Variant| matches!(variant.mistake, Mistake::RemediedBy(_));
     let compare = match chapter.variants.iter().find(is_compared) {
@@ -393,7 +399,7 @@ mod tests {
         const WRONG: Variant = Variant::new("wrong", nothing, "what is wrong").remedied_by("right");
         let with_mistake = Chapter { name: "ch00", question: "?", variants: &[RIGHT, WRONG] };
         assert_eq!(
-            hints(&with_mistake),
+            hints(&with_mistake, with_mistake.lead()),
             "right: what is right\n\
              A mistake beside its remedy: cargo run --bin ch00 -- wrong --compare\n\
              What happened at a pixel: cargo run --bin ch00 -- right --inspect 320,240"
@@ -408,6 +414,9 @@ mod tests {
         );
         assert_eq!(no_such_variant(&with_mistake, "x"), "ch00 has no variant 'x'\nIt has: right, wrong");
         let without = Chapter { variants: &[RIGHT], ..with_mistake };
-        assert!(hints(&without).contains("\nWhat else can be drawn: cargo run --bin ch00 -- --list\n"));
+        assert!(
+            hints(&without, without.lead())
+                .contains("\nWhat else can be drawn: cargo run --bin ch00 -- --list\n")
+        );
     }
 }
