@@ -78,10 +78,10 @@ def prepare(folder):
     # New: nothing was accepted; the file is lost; it is not the picture.
     (accepted / f"{STAR}.snap.png").unlink()
     (accepted / f"{WIREFRAME}.snap.png").write_text("version https://git-lfs.github.com/spec/v1\n")
-    # Missing: no variant draws it; the program cannot write it, as a folder is in its place.
+    # Missing: no variant draws it; the program cannot write it, as there are folders in its place and in that folder.
     for end in [".snap", ".snap.png"]:
         shutil.copy(SNAPSHOTS / f"{PIXEL}{end}", accepted / f"{GONE}{end}")
-    (folder / "drawn" / f"{LINE}.png").mkdir(parents=True)
+    (folder / "drawn" / f"{LINE}.png" / "line.png").mkdir(parents=True)
 
 
 def spoil(accepted):
@@ -133,7 +133,7 @@ def check_accepting(folder, command):
 
     for end in [".snap", ".snap.png"]:
         (folder / "accepted" / f"{GONE}{end}").unlink()
-    (folder / "drawn" / f"{LINE}.png").rmdir()
+    shutil.rmtree(folder / "drawn" / f"{LINE}.png")
     code, log = run(folder, INSTA_UPDATE="always")
     equal(code, 0)
     check("Accepted: 3 pictures replaced, 2 added" in log, log)
