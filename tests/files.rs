@@ -1,28 +1,16 @@
 //! Models and textures from the wild: what is wrong with one is said in a line, with the file's name, and nothing is
 //! written; what is merely odd is a warning.
 
+#[path = "support/drawing.rs"]
+mod drawing;
+
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Command;
 
-/// An empty folder of its own for one test.
+use drawing::{draw, stderr};
+
 fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("files").join(name);
-    let _ = std::fs::remove_dir_all(&folder);
-    std::fs::create_dir_all(&folder).expect("a folder in target");
-    folder
-}
-
-fn draw(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_ch10_matrices_lighting"))
-        .args(["lit", "--size", "64x48", "--out", "picture.png"])
-        .args(arguments)
-        .current_dir(folder)
-        .output()
-        .expect("the program starts")
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
+    drawing::folder("files", name)
 }
 
 /// One line that names the file and the cause, exit code 1, no picture.

@@ -1,30 +1,22 @@
 //! Models and textures as they come from the wild: each case of the table is drawn like its plain form, pixel by pixel, and
 //! what is not drawn is said.
 
+#[path = "support/drawing.rs"]
+mod drawing;
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use base64::Engine;
+use drawing::{draw, stderr};
 
-/// A folder of its own for one drawing.
 fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("wild").join(name.replace(' ', "_"));
-    let _ = std::fs::remove_dir_all(&folder);
-    std::fs::create_dir_all(&folder).expect("a folder in target");
-    folder
+    drawing::folder("wild", name)
 }
 
+/// Frame 315, by the exact rasterizer.
 fn run(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_ch10_matrices_lighting"))
-        .args(["lit", "--frame", "315", "--size", "64x48", "--rasterizer", "exact", "--out", "picture.png"])
-        .args(arguments)
-        .current_dir(folder)
-        .output()
-        .expect("the program starts")
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
+    draw(folder, &[&["--frame", "315", "--rasterizer", "exact"], arguments].concat())
 }
 
 type Files<'a> = &'a [(&'a str, &'a [u8])];

@@ -88,9 +88,7 @@ impl Request {
             overdraw: matches.get_flag("overdraw"),
         })
     }
-}
 
-impl Request {
     /// Which normals a model gets.
     pub(super) const fn normal_style(&self) -> NormalStyle {
         if self.flat { NormalStyle::Flat } else { NormalStyle::Smooth }
