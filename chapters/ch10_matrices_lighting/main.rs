@@ -6,7 +6,7 @@
 //!
 //! New here: matrices (`lib/transform.rs`), light (`lib/light.rs`), models and textures from files (`lib/model.rs`, `lib/files.rs`).
 //! The figures: `matrices.rs`, `lit.rs`, `shading.rs`, `textures.rs`,
-//! `walls.rs`, `spaces.rs`, `still_life.rs`. Book: chapters 10 and 11.
+//! `walls.rs`, `spaces.rs`, `still_life.rs`, `turntable.rs`. Book: chapters 10 and 11.
 
 mod lit;
 mod matrices;
@@ -14,6 +14,7 @@ mod shading;
 mod spaces;
 mod still_life;
 mod textures;
+mod turntable;
 mod walls;
 
 use std::process::ExitCode;
@@ -32,6 +33,8 @@ pub(crate) const CHAPTER: Chapter = Chapter {
     variants: &[
         Variant::with_pipeline("still-life", still_life::still_life, "pawns and a ball on a polished board, everything at once: perspective, textures with mip maps, light, depth, and a board that is blended over its reflections")
             .tiled().size(768, 432).animated(ORBIT),
+        Variant::of_model("turntable", turntable::turntable, ["cube.obj", "letters.png"], "a model seen from the upper right and lit from the left: three sides, three brightnesses; made for a --model of your own")
+            .tiled().animated(ORBIT).knobs(turntable::KNOBS),
         Variant::of_model("lit", lit::lit, ["pawn.obj", "wood.png"], "a model turns in the light: bright where it faces the light, never black; a few specks are seams that the scanline fill leaves open, or first texels where u ends at 1")
             .source("sections 11.1 to 11.3").animated(TURN),
         Variant::with_pipeline("rotation", matrices::rotation, "a triangle turns about an upright axis, a degree a frame; it vanishes when we see its back")

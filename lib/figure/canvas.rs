@@ -1,5 +1,6 @@
 //! What the figures of the later chapters draw on: a target, and the pipeline with its viewport in the middle.
 
+use super::knobs::Knobs;
 use crate::exact::Exact;
 use crate::framebuffer::Framebuffer;
 use crate::mesh::Mesh;
@@ -68,6 +69,8 @@ enum Drawing {
 pub struct Canvas {
     /// The number of the frame, 0 if the picture is no animation.
     pub frame: u32,
+    /// What the variant's knobs are set to.
+    pub knobs: Knobs,
     /// The target is not cleared at first.
     drawing: Drawing,
     /// Who observes the pipeline; the target carries the same observer.
@@ -91,7 +94,7 @@ impl Canvas {
             #[cfg(feature = "tiled")]
             RasterizerChoice::Tiled => Drawing::Tiled(Target::like(framebuffer), Tiled::new()),
         };
-        Self { frame, drawing, observer, aspect }
+        Self { frame, knobs: Knobs::default(), drawing, observer, aspect }
     }
 
     pub(super) fn into_picture(self) -> Framebuffer {

@@ -1,6 +1,7 @@
 //! A chapter's table: its variants, each one picture.
 
 use super::canvas::{Canvas, RasterizerChoice};
+use super::knobs::{Knob, Knobs};
 use super::subject::Subject;
 use crate::files::FileError;
 use crate::framebuffer::Framebuffer;
@@ -53,6 +54,8 @@ pub struct Variant {
     pub animation: Option<Animation>,
     /// The rasterizer, unless `--rasterizer` says otherwise; figures without a pipeline have none.
     pub rasterizer: Option<RasterizerChoice>,
+    /// What can be turned.
+    pub knobs: &'static [Knob],
     figure: Figure,
 }
 
@@ -67,6 +70,8 @@ pub struct DrawOptions<'a> {
     pub rasterizer: RasterizerChoice,
     /// What it is a picture of, where it draws a model.
     pub subject: Option<&'a Subject>,
+    /// What the variant's knobs are set to.
+    pub knobs: Knobs,
     /// Who observes, if anybody does.
     pub observer: Option<SharedProbe>,
 }
@@ -81,7 +86,10 @@ impl DrawOptions<'_> {
 
     /// What is drawn on with the pipeline, for a scene that is made for a picture of the proportions of `native`.
     fn canvas(&self, native: (u32, u32)) -> Canvas {
-        Canvas::new(&self.framebuffer(), native, self.frame, self.rasterizer, self.observer.clone())
+        let mut canvas =
+            Canvas::new(&self.framebuffer(), native, self.frame, self.rasterizer, self.observer.clone());
+        canvas.knobs = self.knobs.clone();
+        canvas
     }
 }
 
@@ -90,6 +98,8 @@ impl DrawOptions<'_> {
 enum Figure {
     /// Chapters 1 to 8: into a framebuffer.
     Plain(fn(&mut Framebuffer)),
+    /// The same, with knobs.
+    Turned(fn(&mut Framebuffer, &Knobs)),
     /// Chapter 2, of a model.
     PlainModel(fn(&mut Framebuffer, &Subject), Assets),
     /// From chapter 9 on: with the pipeline.
@@ -132,7 +142,18 @@ impl Variant {
         Self::of(name, Figure::Plain(draw), look)
     }
 
-    /// The same, drawn with the pipeline.
+    /// The same with knobs, which the drawing function reads.
+    #[must_use]
+    pub const fn with_knobs(
+        name: &'static str,
+        draw: fn(&mut Framebuffer, &Knobs),
+        knobs: &'static [Knob],
+        look: &'static str,
+    ) -> Self {
+        Self::of(name, Figure::Turned(draw), look).knobs(knobs)
+    }
+
+    /// The same, drawn with the pipeline; knobs are read from the canvas.
     #[must_use]
     pub const fn with_pipeline(name: &'static str, draw: fn(&mut Canvas), look: &'static str) -> Self {
         Self::of(name, Figure::Canvas(draw), look)
@@ -162,11 +183,12 @@ impl Variant {
 
     const fn of(name: &'static str, figure: Figure, look: &'static str) -> Self {
         let rasterizer = match figure {
-            Figure::Plain(_) | Figure::PlainModel(..) => None,
+            Figure::Plain(_) | Figure::Turned(_) | Figure::PlainModel(..) => None,
             Figure::Canvas(_) | Figure::Model(..) => Some(RasterizerChoice::Scanline),
         };
         let (source, mistake) = ("", Mistake::No);
-        Self { name, look, source, size: (640, 480), mistake, animation: None, rasterizer, figure }
+        let size = (640, 480);
+        Self { name, look, source, size, mistake, animation: None, rasterizer, knobs: &[], figure }
     }
 
     /// The same, with the exact rasterizer.
@@ -197,6 +219,12 @@ impl Variant {
     pub const fn animated(self, animation: Animation) -> Self {
         assert!(animation.frames > 0 && animation.rate > 0, "an animation has frames, and they move");
         Self { animation: Some(animation), ..self }
+    }
+
+    /// The same, with knobs.
+    #[must_use]
+    pub const fn knobs(self, knobs: &'static [Knob]) -> Self {
+        Self { knobs, ..self }
     }
 
     /// The same, of another size in pixels.
@@ -249,7 +277,7 @@ impl Variant {
     /// As [`Self::subject`].
     pub fn subject_with(&self, style: NormalStyle) -> Result<Option<Subject>, FileError> {
         match self.figure {
-            Figure::Plain(_) | Figure::Canvas(_) => Ok(None),
+            Figure::Plain(_) | Figure::Turned(_) | Figure::Canvas(_) => Ok(None),
             Figure::PlainModel(_, Assets { model, texture })
             | Figure::Model(_, Assets { model, texture }) => {
                 Subject::of_assets(model, texture, style).map(Some)
@@ -261,7 +289,8 @@ impl Variant {
     #[must_use]
     pub fn options<'a>(&self, subject: Option<&'a Subject>) -> DrawOptions<'a> {
         let rasterizer = self.rasterizer.unwrap_or_default();
-        DrawOptions { size: self.size, frame: 0, rasterizer, subject, observer: None }
+        let knobs = Knobs::new(self.knobs, self.size);
+        DrawOptions { size: self.size, frame: 0, rasterizer, subject, knobs, observer: None }
     }
 
     /// Draws the picture; without a subject, a variant that draws one stays black.
@@ -282,6 +311,7 @@ impl Variant {
         };
         match (self.figure, options.subject) {
             (Figure::Plain(draw), _) => in_plane(&draw),
+            (Figure::Turned(draw), _) => in_plane(&|picture| draw(picture, &options.knobs)),
             (Figure::PlainModel(draw, _), Some(subject)) => in_plane(&|picture| draw(picture, subject)),
             (Figure::Canvas(draw), _) => on_canvas(&draw),
             (Figure::Model(draw, _), Some(subject)) => on_canvas(&|canvas| draw(canvas, subject)),

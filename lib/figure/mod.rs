@@ -25,9 +25,13 @@
 pub mod assets;
 mod canvas;
 mod chapter;
+mod knobs;
 pub mod picture;
+mod scene;
 mod subject;
 
 pub use canvas::{Canvas, RasterizerChoice};
 pub use chapter::{Animation, Chapter, DrawOptions, Mistake, Variant};
+pub use knobs::{Kind, Knob, KnobError, Knobs, Value};
+pub use scene::{Given, Scene};
 pub use subject::Subject;

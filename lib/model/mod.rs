@@ -158,17 +158,23 @@ impl Model {
         positions.fold(nothing, |(low, high), position| (low.min(position), high.max(position)))
     }
 
-    /// The same model, moved and scaled so that the middle of its bounding box comes to `center`, and its farthest vertex
-    /// to the distance `radius` from there.
+    /// The middle of its bounding box, and how far its farthest vertex is from there.
     #[must_use]
-    pub fn fitted(mut self, center: DVec3, radius: f64) -> Self {
+    pub fn bounding_sphere(&self) -> (DVec3, f64) {
         let (low, high) = self.bounds();
         // Halves first: the sum of two finite coordinates may not be finite.
         let middle = low / 2.0 + high / 2.0;
         let positions = self.parts.iter().flat_map(|part| part.mesh.vertices()).map(|vertex| vertex.position);
         // In two steps, since squares of large coordinates may not be finite either.
         let largest = (high / 2.0 - low / 2.0).max_element();
-        let size = largest * positions.map(|p| ((p - middle) / largest).length()).fold(0.0, f64::max);
+        (middle, largest * positions.map(|p| ((p - middle) / largest).length()).fold(0.0, f64::max))
+    }
+
+    /// The same model, moved and scaled so that the middle of its bounding box comes to `center`, and its farthest vertex
+    /// to the distance `radius` from there.
+    #[must_use]
+    pub fn fitted(mut self, center: DVec3, radius: f64) -> Self {
+        let (middle, size) = self.bounding_sphere();
         let scaled = |offset: DVec3| if size > 0.0 { offset / size * radius } else { offset };
         for part in &mut self.parts {
             part.mesh = part

@@ -8,7 +8,7 @@ use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 
 use super::programs::PROGRAMS;
 use crate::figure::picture::Zoom;
-use crate::figure::{Chapter, Mistake, RasterizerChoice, Variant};
+use crate::figure::{Chapter, Knob, Mistake, RasterizerChoice, Variant};
 use crate::framebuffer::Framebuffer;
 use crate::model::NormalStyle;
 use crate::rect::Pixel;
@@ -38,6 +38,12 @@ pub(super) struct Request {
     pub(super) verbose: bool,
     pub(super) steps: bool,
     pub(super) overdraw: bool,
+    /// Settings of knobs, NAME=VALUE.
+    pub(super) settings: Vec<String>,
+    /// The knob that is swept.
+    pub(super) sweep: Option<String>,
+    /// Whether the knobs are to be listed.
+    pub(super) knobs: bool,
 }
 
 /// The form of a history.
@@ -86,6 +92,9 @@ impl Request {
             verbose: matches.get_flag("verbose"),
             steps: matches.get_flag("steps"),
             overdraw: matches.get_flag("overdraw"),
+            settings: settings(&matches),
+            sweep: text("sweep"),
+            knobs: matches.get_flag("knobs"),
         })
     }
 
@@ -98,6 +107,21 @@ impl Request {
 fn comparison(matches: &ArgMatches) -> Option<Comparison> {
     let mut names = matches.get_many::<String>("compare")?;
     Some(names.next().map_or(Comparison::Remedy, |name| Comparison::With(name.clone())))
+}
+
+/// All settings of knobs: `--set`, and the options that are short for some of them.
+fn settings(matches: &ArgMatches) -> Vec<String> {
+    let given = matches.get_many::<String>("set").into_iter().flatten().cloned();
+    let angles = |id: &str, [first, second]: [&str; 2]| {
+        let pair = matches.get_one::<[f64; 2]>(id);
+        pair.map(|[a, b]| [format!("{first}={a}"), format!("{second}={b}")]).into_iter().flatten()
+    };
+    let background = matches.get_one::<String>("background").map(|color| format!("background={color}"));
+    given
+        .chain(angles("eye", ["azimuth", "elevation"]))
+        .chain(angles("light", ["light-azimuth", "light-elevation"]))
+        .chain(background)
+        .collect()
 }
 
 fn command(chapter: &Chapter) -> Command {
@@ -117,6 +141,7 @@ fn command(chapter: &Chapter) -> Command {
         .version(env!("CARGO_PKG_VERSION"))
         .args(what_to_draw(chapter))
         .args(how_to_draw(chapter))
+        .args(knobs(chapter))
         .args(subject(chapter))
         .arg(rasterizer(chapter))
         .args(what_to_tell())
@@ -139,12 +164,53 @@ fn what_to_draw(chapter: &Chapter) -> [Arg; 3] {
     ]
 }
 
-/// What is drawn in place of a variant's own model.
-fn subject(chapter: &Chapter) -> [Arg; 4] {
+/// What can be turned.
+fn knobs(chapter: &Chapter) -> [Arg; 3] {
+    let is_hidden = chapter.variants.iter().all(|variant| variant.knobs.is_empty());
+    [
+        option(
+            "set",
+            "NAME=VALUE",
+            "Set a knob of the variant to a value, such as tilt=60; can be given several times",
+        )
+        .action(ArgAction::Append)
+        .conflicts_with("all"),
+        option(
+            "sweep",
+            "NAME",
+            "Draw an animation in which a knob goes once through its range; with --compare too",
+        )
+        .conflicts_with_all(["all", "animate", "inspect", "steps", "overdraw"]),
+        switch("knobs", "List the knobs of the variant: name, default, range, and what to watch")
+            .conflicts_with_all(["all", "out", "inspect"]),
+    ]
+    .map(|argument| argument.hide(is_hidden))
+}
+
+/// The knobs of a variant, two lines each.
+pub(super) fn knob_list(variant: &Variant) -> String {
+    if variant.knobs.is_empty() {
+        return format!("'{}' has no knobs", variant.name);
+    }
+    let line = |knob: &Knob| {
+        let Knob { name, watch, .. } = knob;
+        format!("\n  {name} = {}   ({})\n      {watch}", knob.shown(knob.default()), knob.range())
+    };
+    let lines: String = variant.knobs.iter().map(line).collect();
+    format!("Knobs of '{}', --set NAME=VALUE:{lines}", variant.name)
+}
+
+/// Whether some variant has a knob of this name.
+fn has_knob(chapter: &Chapter, name: &str) -> bool {
+    chapter.variants.iter().flat_map(|variant| variant.knobs).any(|knob| knob.name == name)
+}
+
+/// What is drawn in place of a variant's own model, and how it is looked at.
+fn subject(chapter: &Chapter) -> [Arg; 7] {
     let path = value_parser!(PathBuf);
     // Where no variant draws a model, help does not speak of them.
     let is_hidden = !chapter.variants.iter().any(Variant::has_model);
-    [
+    let given = [
         option("model", "FILE.obj", "Draw this model (Wavefront OBJ: its faces, with Kd and map_Kd of their materials), where the variant draws one; a warning says what is left out")
             .value_parser(path.clone())
             .conflicts_with("all"),
@@ -154,8 +220,26 @@ fn subject(chapter: &Chapter) -> [Arg; 4] {
         switch("as-is", "Leave the model where it is and as large as it is, not centered and scaled to fit")
             .requires("model"),
         switch("flat", "Give the model the normals of its faces, so that every edge shows"),
-    ]
-    .map(|argument| argument.hide(is_hidden))
+    ];
+    let view = [
+        option(
+            "eye",
+            "AZIMUTH,ELEVATION",
+            "Look at the model from there, in degrees: to the right, then up; 0,0 is from the front",
+        )
+        .value_parser(parse_angles)
+        .allow_hyphen_values(true)
+        .conflicts_with("all"),
+        option("light", "AZIMUTH,ELEVATION", "Light the model from there, in the same way")
+            .value_parser(parse_angles)
+            .allow_hyphen_values(true)
+            .conflicts_with("all"),
+        option("background", "#RRGGBB", "Put the model before this color").conflicts_with("all"),
+    ];
+    let has_view = has_knob(chapter, "azimuth");
+    let [model, texture, as_is, flat] = given.map(|argument| argument.hide(is_hidden));
+    let [eye, light, background] = view.map(|argument| argument.hide(!has_view));
+    [model, texture, as_is, flat, eye, light, background]
 }
 
 /// How a picture came about.
@@ -265,6 +349,13 @@ fn parse_pixel(text: &str) -> Result<Pixel, String> {
         .split_once(',')
         .and_then(|(x, y)| Some((x.trim().parse::<i32>().ok()?, y.trim().parse::<i32>().ok()?)));
     coordinates.ok_or_else(|| "expected X,Y, such as 320,240".to_owned())
+}
+
+/// Two angles in degrees.
+fn parse_angles(text: &str) -> Result<[f64; 2], String> {
+    let angle = |text: &str| text.trim().parse::<f64>().ok().filter(|angle| angle.is_finite());
+    let angles = text.split_once(',').and_then(|(a, b)| Some([angle(a)?, angle(b)?]));
+    angles.ok_or_else(|| "expected AZIMUTH,ELEVATION in degrees, such as 30,20".to_owned())
 }
 
 fn parse_zoom(text: &str) -> Result<Zoom, String> {

@@ -113,6 +113,7 @@ pub const PROGRAMS: [Program; 11] = [
         question: "How does a thing get its place, and its light and shade?",
         variants: &[
             "still-life",
+            "turntable",
             "lit",
             "rotation",
             "pivot",

@@ -1,24 +1,26 @@
 //! What a chapter's program does with its arguments.
 
 use std::io::IsTerminal;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use glam::DVec3;
 
 use super::animation::{encode, progress_bar};
-use super::arguments::{Comparison, Format, Request, list};
+use super::arguments::{Comparison, Format, Request, knob_list, list};
 use super::failure::Failure;
 use super::output::{Destination, note, say};
 use super::programs::PROGRAMS;
 use crate::figure::picture::{Zoom, difference, side_by_side, zoomed};
-use crate::figure::{Chapter, DrawOptions, Mistake, RasterizerChoice, Subject, Variant};
+use crate::figure::{
+    Animation, Chapter, DrawOptions, Given, KnobError, Knobs, Mistake, RasterizerChoice, Scene, Subject,
+    Variant,
+};
 use crate::files::{FileError, load_texture, shown};
 use crate::framebuffer::Framebuffer;
 use crate::inspect::{Steps, history};
 use crate::model::Model;
 use crate::rect::{Pixel, Rect};
-use crate::texture::Texture;
 
 impl Chapter {
     /// The whole program: reads the arguments, draws, writes, reports.
@@ -65,6 +67,9 @@ fn run(chapter: &Chapter, request: &Request) -> Result<(), Failure> {
         Some(name) => find(chapter, name)?,
         None => unnamed(chapter, request),
     };
+    if request.knobs {
+        return say(&knob_list(variant));
+    }
     if let Some(pixel) = request.inspect {
         return inspect_pixel(chapter, variant, request, pixel);
     }
@@ -72,6 +77,7 @@ fn run(chapter: &Chapter, request: &Request) -> Result<(), Failure> {
         return draw_recorded(variant, request, &destination);
     }
     match &request.compare {
+        _ if request.sweep.is_some() => sweep(chapter, variant, request, &destination),
         None if request.animate => animate(variant, request, &destination),
         None => {
             draw_one(variant, request, &destination)?;
@@ -88,7 +94,12 @@ fn run(chapter: &Chapter, request: &Request) -> Result<(), Failure> {
 
 /// The variant for those who have named none: the lead, or the first that can draw what was given instead of its own.
 fn unnamed<'a>(chapter: &'a Chapter, request: &Request) -> &'a Variant {
-    let accepts = |variant: &&Variant| check_model_options(variant, request).is_ok();
+    let has_knobs = |variant: &Variant| {
+        let knobs = Knobs::new(variant.knobs, variant.size);
+        let names = request.settings.iter().filter_map(|setting| setting.split_once('='));
+        names.map(|(name, _)| name).chain(request.sweep.as_deref()).all(|name| knobs.find(name).is_some())
+    };
+    let accepts = |variant: &&Variant| check_model_options(variant, request).is_ok() && has_knobs(variant);
     chapter.variants.iter().find(accepts).unwrap_or_else(|| chapter.lead())
 }
 
@@ -143,36 +154,26 @@ fn other<'a>(
     }
 }
 
-/// A variant as it was asked for: its size, its rasterizer, and what it is a picture of.
-struct Job<'a> {
-    variant: &'a Variant,
-    size: (u32, u32),
-    rasterizer: RasterizerChoice,
-    subject: Option<Subject>,
+/// A variant as it was asked for: what it is a picture of, its size, its rasterizer, its knobs, its frame.
+fn scene_of<'a>(variant: &'a Variant, request: &Request, given: &Given) -> Result<Scene<'a>, Failure> {
+    let mut scene = Scene { frame: frame_of(variant, request)?, ..sized(variant, request, given)? };
+    for setting in &request.settings {
+        scene.knobs.set(setting).map_err(|error| not_set(variant, &error))?;
+    }
+    Ok(scene)
 }
 
-impl<'a> Job<'a> {
-    fn new(variant: &'a Variant, request: &Request, given: &Given) -> Result<Self, Failure> {
-        let size = request.size.unwrap_or(variant.size);
-        check_zoom(size, request.zoom)?;
-        let own = variant.subject_with(request.normal_style()).map_err(runtime_failure)?;
-        let subject = own.map(|own| match &given.model {
-            // The chapters' own models are where they should be, and have their own texture.
-            None => Subject { texture: given.texture.clone().or(own.texture), ..own },
-            Some(model) => Subject { model: model.clone(), texture: given.texture.clone() },
-        });
-        let rasterizer = rasterizer_of(variant, request)?;
-        Ok(Self { variant, size, rasterizer, subject })
-    }
+/// The same at the first frame, its knobs at their defaults.
+fn sized<'a>(variant: &'a Variant, request: &Request, given: &Given) -> Result<Scene<'a>, Failure> {
+    let size = request.size.unwrap_or(variant.size);
+    check_zoom(size, request.zoom)?;
+    let rasterizer = rasterizer_of(variant, request)?;
+    Ok(Scene { size, rasterizer, ..Scene::new(variant, given).map_err(runtime_failure)? })
+}
 
-    fn draw(&self, frame: u32) -> Framebuffer {
-        self.variant.draw(&self.options(frame))
-    }
-
-    fn options(&self, frame: u32) -> DrawOptions<'_> {
-        let (size, rasterizer, subject) = (self.size, self.rasterizer, self.subject.as_ref());
-        DrawOptions { size, frame, rasterizer, subject, observer: None }
-    }
+/// Why a knob was not set, and which there are.
+fn not_set(variant: &Variant, error: &KnobError) -> Failure {
+    Failure::Usage(format!("'{}': {error}\n{}", variant.name, knob_list(variant)))
 }
 
 /// What is wrong with a file.
@@ -209,46 +210,38 @@ fn check_model_options(variant: &Variant, request: &Request) -> Result<(), Failu
     Ok(())
 }
 
-/// What was given in place of a variant's own model and texture.
-struct Given {
-    model: Option<Model>,
-    texture: Option<Texture>,
-}
-
-impl Given {
-    /// Reads what was given, if it means something to all variants.
-    fn load(request: &Request, variants: &[&Variant]) -> Result<Self, Failure> {
-        for variant in variants {
-            check_model_options(variant, request)?;
-        }
-        let mut warnings = Vec::new();
-        let mut model = None;
-        if let Some(path) = &request.model {
-            let progress = progress_bar(0, "bytes");
-            let loaded = Model::load(path, request.normal_style(), |read, total| {
-                progress.set_length(total);
-                progress.set_position(read);
-            });
-            progress.finish_and_clear();
-            let (loaded, more) = loaded.map_err(runtime_failure)?;
-            warnings.extend(more);
-            if request.texture.is_some() && !loaded.has_texture_coordinates() {
-                let odd = "has no texture coordinates: one texel covers all of it";
-                warnings.push(shown(&format!("{}: {odd}", path.display())));
-            }
-            model = Some(if request.as_is { loaded } else { loaded.fitted(PLACE.0, PLACE.1) });
-        }
-        let mut texture = None;
-        if let Some(path) = &request.texture {
-            let (loaded, more) = load_texture(path).map_err(runtime_failure)?;
-            warnings.extend(more);
-            texture = Some(loaded);
-        }
-        for warning in warnings {
-            note(&format!("warning: {warning}"));
-        }
-        Ok(Self { model, texture })
+/// Reads what was given in place of a variant's own model and texture, if it means something to all variants.
+fn load(request: &Request, variants: &[&Variant]) -> Result<Given, Failure> {
+    for variant in variants {
+        check_model_options(variant, request)?;
     }
+    let mut warnings = Vec::new();
+    let mut model = None;
+    if let Some(path) = &request.model {
+        let progress = progress_bar(0, "bytes");
+        let loaded = Model::load(path, request.normal_style(), |read, total| {
+            progress.set_length(total);
+            progress.set_position(read);
+        });
+        progress.finish_and_clear();
+        let (loaded, more) = loaded.map_err(runtime_failure)?;
+        warnings.extend(more);
+        if request.texture.is_some() && !loaded.has_texture_coordinates() {
+            let odd = "has no texture coordinates: one texel covers all of it";
+            warnings.push(shown(&format!("{}: {odd}", path.display())));
+        }
+        model = Some(if request.as_is { loaded } else { loaded.fitted(PLACE.0, PLACE.1) });
+    }
+    let mut texture = None;
+    if let Some(path) = &request.texture {
+        let (loaded, more) = load_texture(path).map_err(runtime_failure)?;
+        warnings.extend(more);
+        texture = Some(loaded);
+    }
+    for warning in warnings {
+        note(&format!("warning: {warning}"));
+    }
+    Ok(Given { model, texture, style: request.normal_style() })
 }
 
 /// The frame that was asked for, if the variant has it.
@@ -295,18 +288,52 @@ fn name_of(variant: &Variant, request: &Request) -> String {
         let place = zoom.center.map_or_else(String::new, |(x, y)| format!("-at-{x}-{y}"));
         format!("-zoom{}{place}", zoom.factor)
     });
-    format!("{}{frame}{rasterizer}{zoom}", variant.name)
+    let settings: String =
+        request.settings.iter().map(|setting| format!("-{}", file_name(setting))).collect();
+    format!("{}{frame}{settings}{rasterizer}{zoom}", variant.name)
+}
+
+/// A setting such as `tilt=60` as a part of a file name.
+fn file_name(setting: &str) -> String {
+    setting.chars().filter(|c| *c != '#').map(|c| if c == '=' || c == ',' { '-' } else { c }).collect()
 }
 
 fn draw_one(variant: &Variant, request: &Request, destination: &Destination) -> Result<(), Failure> {
-    let frame = frame_of(variant, request)?;
-    let job = Job::new(variant, request, &Given::load(request, &[variant])?)?;
-    let picture = enlarged(job.draw(frame), request.zoom);
-    destination.write(&name_of(variant, request), &picture)?;
+    let scene = scene_of(variant, request, &load(request, &[variant])?)?;
+    let picture = scene.draw();
+    let unseen = request.model.as_ref().and_then(|path| unseen(path, &scene, &picture));
+    destination.write(&name_of(variant, request), &enlarged(picture, request.zoom))?;
+    if let Some(reason) = unseen {
+        note(&reason);
+    }
     if let Some(zoom) = request.zoom {
-        note(&shown_by(zoom, job.size));
+        note(&shown_by(zoom, scene.size));
     }
     Ok(())
+}
+
+/// If the picture shows nothing of the model: that it does not, and why.
+fn unseen(path: &Path, scene: &Scene<'_>, picture: &Framebuffer) -> Option<String> {
+    let subject = scene.subject.as_ref()?;
+    let without = Subject { model: Model { parts: Vec::new() }, texture: None };
+    let empty = scene.variant.draw(&DrawOptions { subject: Some(&without), ..scene.options(None) });
+    if difference(picture, &empty).is_none_or(|(_, count)| count > 0) {
+        return None;
+    }
+    let meshes = || subject.model.parts.iter().map(|part| &part.mesh);
+    let has_area = meshes().any(|mesh| {
+        mesh.triangles().any(|indices| {
+            let [a, b, c] = indices.map(|index| mesh.vertices()[index].position);
+            (b - a).cross(c - a) != DVec3::ZERO
+        })
+    });
+    let reason = if has_area {
+        "its faces turn away from the eye, or lie outside the view; 'turntable' of chapter 10 draws both sides, and \
+         all of it (without --as-is the model is brought into the view)"
+    } else {
+        "its faces have no area"
+    };
+    Some(shown(&format!("nothing of {} is visible: {reason}", path.display())))
 }
 
 /// Which pixels a zoomed picture shows, so that one that is seen can be found again.
@@ -324,9 +351,47 @@ fn animate(variant: &Variant, request: &Request, destination: &Destination) -> R
     let Some(animation) = variant.animation else {
         return Err(Failure::Usage(format!("'{}' is one picture: it cannot be animated", variant.name)));
     };
-    let job = Job::new(variant, request, &Given::load(request, &[variant])?)?;
-    let draw = |frame| enlarged(job.draw(frame), request.zoom);
+    let scene = scene_of(variant, request, &load(request, &[variant])?)?;
+    let draw = |frame| enlarged(variant.draw(&DrawOptions { frame, ..scene.options(None) }), request.zoom);
     destination.write_animation(&name_of(variant, request), |format| encode(format, animation, &draw))
+}
+
+/// How many frames a sweep has, and how fast they are shown.
+const SWEEP: Animation = Animation { frames: 60, rate: 20 };
+
+/// Draws an animation in which a knob goes once through its range, beside the remedy and the difference if that is asked.
+fn sweep(
+    chapter: &Chapter,
+    variant: &Variant,
+    request: &Request,
+    destination: &Destination,
+) -> Result<(), Failure> {
+    let name = request.sweep.as_deref().unwrap_or_default();
+    let knob = Knobs::new(variant.knobs, variant.size).find(name);
+    let knob = knob.ok_or_else(|| not_set(variant, &KnobError::Unknown(name.to_owned())))?;
+    if knob.at(0.0).is_none() {
+        return Err(Failure::Usage(format!("'{name}' is {}: it has no range to be swept", knob.range())));
+    }
+    let turned = |scene: &Scene<'_>, number: u32| {
+        let mut options = scene.options(None);
+        let value = knob.at(f64::from(number) / f64::from(SWEEP.frames - 1));
+        options.knobs.put(name, value.unwrap_or(knob.default()));
+        scene.variant.draw(&options)
+    };
+    let swept = format!("{}-sweep-{name}", name_of(variant, request));
+    let Some(comparison) = &request.compare else {
+        let scene = scene_of(variant, request, &load(request, &[variant])?)?;
+        let draw = |number| enlarged(turned(&scene, number), request.zoom);
+        return destination.write_animation(&swept, |format| encode(format, SWEEP, &draw));
+    };
+    let that = other(chapter, variant, comparison)?;
+    let (first, second) = pair_of(variant, that, request)?;
+    // Whether the three fit is seen at the first frame.
+    let panels = |number| compared(turned(&first, number), turned(&second, number), request.zoom);
+    panels(0).ok_or_else(|| not_comparable(&first, &second))?;
+    let draw = |number| panels(number).map_or_else(|| first.draw(), |(picture, _)| picture);
+    let swept = format!("{swept}--{}", that.name);
+    destination.write_animation(&swept, |format| encode(format, SWEEP, &draw))
 }
 
 /// Prints the history of a pixel; nothing is written but text.
@@ -336,10 +401,9 @@ fn inspect_pixel(
     request: &Request,
     pixel: Pixel,
 ) -> Result<(), Failure> {
-    let frame = frame_of(variant, request)?;
-    let job = Job::new(variant, request, &Given::load(request, &[variant])?)?;
-    check_inside(job.size, pixel)?;
-    let history = history(chapter.name, variant, &job.options(frame), pixel);
+    let scene = scene_of(variant, request, &load(request, &[variant])?)?;
+    check_inside(scene.size, pixel)?;
+    let history = history(chapter.name, variant, &scene.options(None), pixel);
     if request.format == Format::Json {
         return say(&history.to_json());
     }
@@ -349,9 +413,8 @@ fn inspect_pixel(
 
 /// Draws how a picture came about: step by step, or how often each pixel was written.
 fn draw_recorded(variant: &Variant, request: &Request, destination: &Destination) -> Result<(), Failure> {
-    let frame = frame_of(variant, request)?;
-    let job = Job::new(variant, request, &Given::load(request, &[variant])?)?;
-    let steps = Steps::new(variant, &job.options(frame));
+    let scene = scene_of(variant, request, &load(request, &[variant])?)?;
+    let steps = Steps::new(variant, &scene.options(None));
     if request.steps {
         let draw = |number| enlarged(steps.frame(number), request.zoom);
         let name = format!("{}-steps", name_of(variant, request));
@@ -363,28 +426,48 @@ fn draw_recorded(variant: &Variant, request: &Request, destination: &Destination
     destination.write(&name, &enlarged(heat, request.zoom))
 }
 
+/// Two variants that are to be compared: the second takes over the frame, and the knobs that it has too.
+fn pair_of<'a>(
+    this: &'a Variant,
+    that: &'a Variant,
+    request: &Request,
+) -> Result<(Scene<'a>, Scene<'a>), Failure> {
+    let given = load(request, &[this, that])?;
+    let first = scene_of(this, request, &given)?;
+    let mut second = Scene { frame: first.frame, ..sized(that, request, &given)? };
+    second.knobs.take_over(&first.knobs);
+    Ok((first, second))
+}
+
 fn draw_comparison(
     this: &Variant,
     that: &Variant,
     request: &Request,
     destination: &Destination,
 ) -> Result<(), Failure> {
-    let frame = frame_of(this, request)?;
-    let given = Given::load(request, &[this, that])?;
-    let first = Job::new(this, request, &given)?.draw(frame);
-    let second = Job::new(that, request, &given)?.draw(frame);
-    let Some((marked, count)) = difference(&first, &second) else {
-        let reason = format!("'{}' and '{}' differ in size: give --size", this.name, that.name);
-        return Err(Failure::Usage(reason));
-    };
-    let total = first.width() as usize * first.height() as usize;
-    let panels = [first, second, marked].map(|panel| enlarged(panel, request.zoom));
-    let picture = side_by_side(&panels).ok_or_else(|| {
-        Failure::Usage("three such pictures are too wide: give a smaller --size".to_owned())
-    })?;
+    let (first, second) = pair_of(this, that, request)?;
+    let total = first.size.0 as usize * first.size.1 as usize;
+    let (picture, count) =
+        compared(first.draw(), second.draw(), request.zoom).ok_or_else(|| not_comparable(&first, &second))?;
     destination.write(&format!("{}--{}", name_of(this, request), that.name), &picture)?;
     note(&format!("{count} of {total} pixels differ"));
     Ok(())
+}
+
+/// The two pictures and where they differ, side by side, and in how many pixels; `None` if that cannot be drawn.
+fn compared(first: Framebuffer, second: Framebuffer, zoom: Option<Zoom>) -> Option<(Framebuffer, usize)> {
+    let (marked, count) = difference(&first, &second)?;
+    let panels = [first, second, marked].map(|panel| enlarged(panel, zoom));
+    Some((side_by_side(&panels)?, count))
+}
+
+/// Why two variants cannot be drawn side by side.
+fn not_comparable(first: &Scene<'_>, second: &Scene<'_>) -> Failure {
+    Failure::Usage(if first.size == second.size {
+        "three such pictures are too wide: give a smaller --size".to_owned()
+    } else {
+        format!("'{}' and '{}' differ in size: give --size", first.variant.name, second.variant.name)
+    })
 }
 
 #[cfg(test)]

@@ -1,0 +1,154 @@
+//! A model of one's own, seen from where one likes: framed by its bounds, lit from the side, drawn from both sides.
+
+use std::array::from_fn;
+
+use glam::{DMat4, DVec3, dvec3};
+use rasterbook::cull::CullMode;
+use rasterbook::figure::{Canvas, Knob, Subject};
+use rasterbook::light::{blinn_phong, lambert, normalize};
+use rasterbook::mipmap::MipMaps;
+use rasterbook::model::ModelVertex;
+use rasterbook::srgb::{decode, encode};
+use rasterbook::texture::AddressMode;
+use rasterbook::transform::{Frustum, look_at};
+use rasterbook::varyings::Derivatives;
+use rasterbook::{ClipVertex, Color, Framebuffer, Real, Rect, RenderState, Shaded, Shader};
+
+use super::degrees;
+
+pub(super) const KNOBS: &[Knob] = &[
+    Knob::number(
+        "azimuth",
+        35.0,
+        [-180.0, 180.0],
+        "°",
+        "the eye goes round: a highlight wanders over the surface, the dark side stays where it is",
+    ),
+    Knob::number("elevation", 25.0, [-89.0, 89.0], "°", "the eye goes up: the top comes into view"),
+    Knob::number(
+        "light-azimuth",
+        -30.0,
+        [-180.0, 180.0],
+        "°",
+        "the light goes round: faces turn dark one after the other",
+    ),
+    Knob::number("light-elevation", 50.0, [-90.0, 90.0], "°", "the light goes up: at 90 the sides get none"),
+    Knob::number("exponent", 40.0, [1.0, 200.0], "", "the highlight becomes small and sharp"),
+    Knob::color(
+        "background",
+        Color::rgb(122, 130, 140),
+        "dark and bright models both stand out from a middle gray",
+    ),
+];
+
+/// The light of the lamp, and that of the surroundings: from above, and from the ground.
+const LAMP: f64 = 0.95;
+const SKY: f64 = 0.26;
+const GROUND: f64 = 0.09;
+
+// ANCHOR: eye
+/// The direction of an azimuth and an elevation: 0, 0 is towards the reader; to the right, then up.
+fn direction(azimuth: f64, elevation: f64) -> DVec3 {
+    let [(sin_a, cos_a), (sin_e, cos_e)] = [azimuth, elevation].map(|angle| libm::sincos(degrees(angle)));
+    dvec3(cos_e * sin_a, sin_e, -cos_e * cos_a)
+}
+
+/// The camera that sees all of a sphere, and where it is.
+fn camera(center: DVec3, radius: f64, towards: DVec3) -> (DMat4, DVec3) {
+    const FIELD_OF_VIEW: f64 = 32.0;
+    // A little farther away than needed, so that nothing touches the border.
+    let distance = 1.06 * radius / libm::sin(degrees(FIELD_OF_VIEW / 2.0));
+    let eye = center + distance * towards;
+    let frustum = Frustum::from_field_of_view(
+        degrees(FIELD_OF_VIEW),
+        4.0 / 3.0,
+        distance - 1.01 * radius,
+        distance + 1.01 * radius,
+    );
+    (frustum.matrix() * look_at(eye, center, DVec3::Y), eye)
+}
+// ANCHOR_END: eye
+
+/// A surface under a lamp and a sky.
+struct Surface<'a> {
+    clip_from_model: DMat4,
+    eye: DVec3,
+    to_light: DVec3,
+    /// 1 for the side that the normals point to, −1 for the other one.
+    side: f64,
+    exponent: f64,
+    texture: &'a MipMaps,
+}
+
+/// Varyings: the place, the normal, and texture coordinates.
+impl Shader<8> for Surface<'_> {
+    type Attributes = ModelVertex;
+    const USES_DERIVATIVES: bool = true;
+
+    fn vertex(&self, vertex: &ModelVertex) -> ClipVertex<8> {
+        let ModelVertex { position: p, normal: n, uv: [u, v] } = *vertex;
+        ClipVertex {
+            position: self.clip_from_model * p.extend(1.0),
+            varyings: [p.x, p.y, p.z, n.x, n.y, n.z, u, v],
+        }
+    }
+
+    fn fragment<R: Real>(&self, [x, y, z, nx, ny, nz, u, v]: [R; 8]) -> Shaded<R> {
+        let texel = self.texture.bilinear([u, v], R::of(0.0), AddressMode::Repeat);
+        self.shade([x, y, z], [nx, ny, nz], texel)
+    }
+
+    fn fragment_with_derivatives<R: Real>(&self, varyings: [R; 8], change: Derivatives<R, 8>) -> Shaded<R> {
+        let [x, y, z, nx, ny, nz, u, v] = varyings;
+        let level = self.texture.level_of_detail([change.dx[6], change.dx[7]], [change.dy[6], change.dy[7]]);
+        let texel = self.texture.trilinear([u, v], level, AddressMode::Repeat);
+        self.shade([x, y, z], [nx, ny, nz], texel)
+    }
+}
+
+impl Surface<'_> {
+    fn shade<R: Real>(&self, place: [R; 3], normal: [R; 3], texel: [R; 3]) -> Shaded<R> {
+        let normal = normalize(normal.map(|part| part * R::of(self.side)));
+        let to_light = self.to_light.to_array().map(R::of);
+        let to_eye = normalize(from_fn(|i| R::of(self.eye[i]) - place[i]));
+        let diffuse = lambert(normal, to_light) * R::of(LAMP);
+        let gloss = blinn_phong(normal, to_light, to_eye, self.exponent) * R::of(0.18);
+        // From the ground to the sky, as far as the normal points up.
+        let up = normal[1] * R::of(0.5) + R::of(0.5);
+        let around = up * R::of(SKY - GROUND) + R::of(GROUND);
+        let surface = decode(texel);
+        Shaded::opaque(encode(surface.map(|color| color * (diffuse + around) + gloss)))
+    }
+}
+
+/// A gradient: the color in the middle, brighter above, darker below.
+fn backdrop(picture: &mut Framebuffer, color: Color) {
+    let rect = picture.rect();
+    for y in rect.rows() {
+        let brightness = 0.8 + 0.4 * f64::from(y) / f64::from(rect.top);
+        let row = Color::truncated(color.to_f64().map(|channel| (channel * brightness).min(255.0)));
+        picture.fill(Rect { bottom: y, top: y + 1, ..rect }, row);
+    }
+}
+
+/// The model as on a turntable; the eye goes round it once in all frames.
+pub(super) fn turntable(canvas: &mut Canvas, subject: &Subject) {
+    let knobs = canvas.knobs.clone();
+    let azimuth = knobs.number("azimuth") + 3.0 * f64::from(canvas.frame);
+    let exponent = knobs.number("exponent");
+    let (center, radius) = subject.model.bounding_sphere();
+    let towards = direction(azimuth, knobs.number("elevation"));
+    let (clip_from_model, eye) = camera(center, radius, towards);
+    let to_light = direction(knobs.number("light-azimuth"), knobs.number("light-elevation"));
+
+    canvas.clear(&RenderState::default());
+    backdrop(canvas.picture_mut(), knobs.color("background"));
+    for part in &subject.model.parts {
+        let texture = MipMaps::new(&subject.texture_of(part));
+        // Files from elsewhere do not always turn their fronts outwards: backs are drawn too, lit from their own side.
+        for (cull, side) in [(CullMode::Front, -1.0), (CullMode::Back, 1.0)] {
+            let surface = Surface { clip_from_model, eye, to_light, side, exponent, texture: &texture };
+            canvas.draw(&part.mesh, &surface, &RenderState { cull, ..RenderState::default() });
+        }
+    }
+}

@@ -1,0 +1,533 @@
+//! Knobs: named values that a picture depends on, which a reader can turn.
+//!
+//! A chapter's table names them beside the variant; the drawing function reads them by name. Their defaults give the
+//! pinned picture.
+//!
+//! ```
+//! use rasterbook::figure::{Knob, Knobs};
+//!
+//! const TILT: Knob = Knob::number("tilt", 30.0, [0.0, 80.0], "°", "the break grows with the tilt");
+//! let mut knobs = Knobs::new(&[TILT], (640, 480));
+//! assert_eq!(knobs.number("tilt"), 30.0);
+//! knobs.set("tilt=60").expect("in range");
+//! assert_eq!(knobs.number("tilt"), 60.0);
+//! assert!(knobs.set("tilt=81").is_err());
+//! ```
+
+use std::fmt;
+
+use glam::{DVec2, dvec2};
+
+use crate::color::Color;
+
+/// One knob: a row of a variant's table of knobs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Knob {
+    /// How it is called on the command line.
+    pub name: &'static str,
+    /// What can be set, and to what it is set at first.
+    pub kind: Kind,
+    /// What to watch while it is turned.
+    pub watch: &'static str,
+}
+
+/// What a knob holds: a default, and a range where the kind has one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kind {
+    /// A number, both ends of its range included.
+    Number {
+        /// The value of the pinned picture.
+        default: f64,
+        /// The smallest and the largest value.
+        range: [f64; 2],
+        /// Such as `°`; empty for a plain number.
+        unit: &'static str,
+    },
+    /// A whole number.
+    Whole {
+        /// The value of the pinned picture.
+        default: i32,
+        /// The smallest and the largest value.
+        range: [i32; 2],
+        /// Such as `bits`; empty for a plain number.
+        unit: &'static str,
+    },
+    /// One of several names; the first is the default.
+    Choice(&'static [&'static str]),
+    /// On or off.
+    Switch(bool),
+    /// A point of the picture, pixels of the variant's own size, y up from the bottom.
+    Point([f64; 2]),
+    /// A color.
+    Color(Color),
+}
+
+impl Knob {
+    /// A number with its default, its range and its unit.
+    #[must_use]
+    pub const fn number(
+        name: &'static str,
+        default: f64,
+        range: [f64; 2],
+        unit: &'static str,
+        watch: &'static str,
+    ) -> Self {
+        Self { name, kind: Kind::Number { default, range, unit }, watch }
+    }
+
+    /// A whole number with its default, its range and its unit.
+    #[must_use]
+    pub const fn whole(
+        name: &'static str,
+        default: i32,
+        range: [i32; 2],
+        unit: &'static str,
+        watch: &'static str,
+    ) -> Self {
+        Self { name, kind: Kind::Whole { default, range, unit }, watch }
+    }
+
+    /// One of several names, the first at first.
+    #[must_use]
+    pub const fn choice(name: &'static str, names: &'static [&'static str], watch: &'static str) -> Self {
+        Self { name, kind: Kind::Choice(names), watch }
+    }
+
+    /// Something that is on or off.
+    #[must_use]
+    pub const fn switch(name: &'static str, default: bool, watch: &'static str) -> Self {
+        Self { name, kind: Kind::Switch(default), watch }
+    }
+
+    /// A point of the picture.
+    #[must_use]
+    pub const fn point(name: &'static str, default: [f64; 2], watch: &'static str) -> Self {
+        Self { name, kind: Kind::Point(default), watch }
+    }
+
+    /// A color.
+    #[must_use]
+    pub const fn color(name: &'static str, default: Color, watch: &'static str) -> Self {
+        Self { name, kind: Kind::Color(default), watch }
+    }
+
+    /// What it is set to at first.
+    #[must_use]
+    pub const fn default(&self) -> Value {
+        match self.kind {
+            Kind::Number { default, .. } => Value::Number(default),
+            Kind::Whole { default, .. } => Value::Whole(default),
+            Kind::Choice(_) => Value::Choice(0),
+            Kind::Switch(default) => Value::Switch(default),
+            Kind::Point([x, y]) => Value::Point(dvec2(x, y)),
+            Kind::Color(default) => Value::Color(default),
+        }
+    }
+
+    /// The value at a fraction of its range, 0..=1; `None` for points and colors, which have no order.
+    #[must_use]
+    pub fn at(&self, fraction: f64) -> Option<Value> {
+        let whole = |first: i32, last: i32| {
+            let count = f64::from(last) - f64::from(first) + 1.0;
+            // Every value for as long as every other one.
+            ((f64::from(first) + (fraction * count).floor()) as i32).min(last)
+        };
+        match self.kind {
+            // The ends exactly.
+            Kind::Number { range: [low, high], .. } => {
+                Some(Value::Number(low * (1.0 - fraction) + high * fraction))
+            }
+            Kind::Whole { range: [low, high], .. } => Some(Value::Whole(whole(low, high))),
+            Kind::Choice(names) => Some(Value::Choice(whole(0, names.len() as i32 - 1) as usize)),
+            Kind::Switch(_) => Some(Value::Switch(fraction >= 0.5)),
+            Kind::Point(_) | Kind::Color(_) => None,
+        }
+    }
+
+    /// The value that is so many steps of a key or a wheel from `value`, kept in range. A number has 60 steps, a
+    /// point moves to the right by a pixel, a color becomes brighter by a 16th; choices and switches go round.
+    #[must_use]
+    pub fn stepped(&self, value: Value, steps: i32) -> Value {
+        match (self.kind, value) {
+            (Kind::Number { range: [low, high], .. }, Value::Number(value)) => {
+                let stepped = value + (high - low) / 60.0 * f64::from(steps);
+                // Without the dust that adding leaves: 0.30000000000000004.
+                Value::Number(((stepped * 1e6).round() / 1e6).clamp(low, high))
+            }
+            (Kind::Whole { range: [low, high], .. }, Value::Whole(value)) => {
+                Value::Whole(value.saturating_add(steps).clamp(low, high))
+            }
+            (Kind::Choice(names), Value::Choice(value)) => {
+                Value::Choice((value as i64 + i64::from(steps)).rem_euclid(names.len() as i64) as usize)
+            }
+            (Kind::Switch(_), Value::Switch(value)) => Value::Switch(value != (steps % 2 != 0)),
+            (Kind::Point(_), Value::Point(point)) => Value::Point(point + dvec2(f64::from(steps), 0.0)),
+            (Kind::Color(_), Value::Color(color)) => {
+                Value::Color(Color::truncated(color.to_f64().map(|c| c + 16.0 * f64::from(steps))))
+            }
+            (_, other) => other,
+        }
+    }
+
+    /// Its kind and range in words, such as `a number, 0 to 80 °`.
+    #[must_use]
+    pub fn range(&self) -> String {
+        let with_unit = |text: String, unit: &str| {
+            if unit.is_empty() { text } else { format!("{text} {unit}") }
+        };
+        match self.kind {
+            Kind::Number { range: [low, high], unit, .. } => {
+                with_unit(format!("a number, {low} to {high}"), unit)
+            }
+            Kind::Whole { range: [low, high], unit, .. } => {
+                with_unit(format!("a whole number, {low} to {high}"), unit)
+            }
+            Kind::Choice(names) => names.join(" | "),
+            Kind::Switch(_) => "on | off".to_owned(),
+            Kind::Point(_) => "a point of the picture, X,Y in pixels, y up".to_owned(),
+            Kind::Color(_) => "a color, #RRGGBB".to_owned(),
+        }
+    }
+
+    /// A value as it is written after `=`.
+    #[must_use]
+    pub fn shown(&self, value: Value) -> String {
+        match (self.kind, value) {
+            (Kind::Choice(names), Value::Choice(index)) => names[index].to_owned(),
+            (_, Value::Switch(on)) => if on { "on" } else { "off" }.to_owned(),
+            (_, Value::Number(value)) => format!("{value}"),
+            (_, Value::Whole(value)) => format!("{value}"),
+            (_, Value::Point(point)) => format!("{},{}", point.x, point.y),
+            (_, Value::Color(color)) => {
+                let [red, green, blue] = color.channels();
+                format!("#{red:02x}{green:02x}{blue:02x}")
+            }
+            (_, Value::Choice(index)) => index.to_string(),
+        }
+    }
+
+    /// The value that a text names, if it is in range; `size` is that of the variant's own picture.
+    fn parse(&self, text: &str, size: (u32, u32)) -> Option<Value> {
+        let finite = |text: &str| text.trim().parse::<f64>().ok().filter(|value| value.is_finite());
+        match self.kind {
+            Kind::Number { range: [low, high], .. } => {
+                finite(text).filter(|value| (low..=high).contains(value)).map(Value::Number)
+            }
+            Kind::Whole { range: [low, high], .. } => {
+                let value = text.trim().parse::<i32>().ok();
+                value.filter(|value| (low..=high).contains(value)).map(Value::Whole)
+            }
+            Kind::Choice(names) => names.iter().position(|name| *name == text).map(Value::Choice),
+            Kind::Switch(_) => match text {
+                "on" | "true" | "1" => Some(Value::Switch(true)),
+                "off" | "false" | "0" => Some(Value::Switch(false)),
+                _ => None,
+            },
+            Kind::Point(_) => {
+                let (x, y) = text.split_once(',')?;
+                let point = dvec2(finite(x)?, finite(y)?);
+                (point == in_picture(point, size)).then_some(Value::Point(point))
+            }
+            Kind::Color(_) => parse_color(text).map(Value::Color),
+        }
+    }
+}
+
+/// The nearest point of the picture.
+fn in_picture(point: DVec2, (width, height): (u32, u32)) -> DVec2 {
+    point.clamp(DVec2::ZERO, dvec2(f64::from(width), f64::from(height)))
+}
+
+/// `#RRGGBB`, with or without the number sign.
+fn parse_color(text: &str) -> Option<Color> {
+    let digits = text.strip_prefix('#').unwrap_or(text);
+    let is_hexadecimal = digits.len() == 6 && digits.bytes().all(|digit| digit.is_ascii_hexdigit());
+    let word = is_hexadecimal.then(|| u32::from_str_radix(digits, 16).ok())??;
+    let [_, red, green, blue] = word.to_be_bytes();
+    Some(Color::rgb(red, green, blue))
+}
+
+/// What a knob is set to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Value {
+    /// Of a number.
+    Number(f64),
+    /// Of a whole number.
+    Whole(i32),
+    /// The index of a name.
+    Choice(usize),
+    /// On or off.
+    Switch(bool),
+    /// Of a point.
+    Point(DVec2),
+    /// Of a color.
+    Color(Color),
+}
+
+/// Why a knob was not set.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum KnobError {
+    /// The text is not NAME=VALUE.
+    Form(String),
+    /// There is no knob of this name.
+    Unknown(String),
+    /// The value is not one that the knob can have.
+    Value {
+        /// The name of the knob.
+        name: &'static str,
+        /// What was given.
+        text: String,
+        /// What it can be.
+        range: String,
+    },
+}
+
+impl fmt::Display for KnobError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Form(text) => write!(f, "expected NAME=VALUE, not '{text}'"),
+            Self::Unknown(name) => write!(f, "there is no knob '{name}'"),
+            Self::Value { name, text, range } => write!(f, "'{name}' cannot be '{text}': it is {range}"),
+        }
+    }
+}
+
+impl std::error::Error for KnobError {}
+
+/// The knobs of a variant and what they are set to.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Knobs {
+    knobs: &'static [Knob],
+    values: Vec<Value>,
+    size: (u32, u32),
+}
+
+impl Knobs {
+    /// Knobs at their defaults, of a picture whose own size is `size`.
+    #[must_use]
+    pub fn new(knobs: &'static [Knob], size: (u32, u32)) -> Self {
+        Self { knobs, values: knobs.iter().map(Knob::default).collect(), size }
+    }
+
+    /// The knobs and their values, in the order of the table.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = (&'static Knob, Value)> + '_ {
+        self.knobs.iter().zip(self.values.iter().copied())
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub const fn is_empty(&self) -> bool {
+        self.knobs.is_empty()
+    }
+
+    /// The knob of a name.
+    #[must_use]
+    pub fn find(&self, name: &str) -> Option<&'static Knob> {
+        self.knobs.iter().find(|knob| knob.name == name)
+    }
+
+    /// Sets the knob that a text NAME=VALUE names.
+    ///
+    /// # Errors
+    /// If the text has another form, no knob has this name, or its range does not hold the value.
+    pub fn set(&mut self, text: &str) -> Result<(), KnobError> {
+        let (name, value) = text.split_once('=').ok_or_else(|| KnobError::Form(text.to_owned()))?;
+        let knob = self.find(name).ok_or_else(|| KnobError::Unknown(name.to_owned()))?;
+        let parsed = knob.parse(value, self.size).ok_or_else(|| KnobError::Value {
+            name: knob.name,
+            text: value.to_owned(),
+            range: knob.range(),
+        })?;
+        self.put(name, parsed);
+        Ok(())
+    }
+
+    /// Sets a knob to a value of its kind; a point is brought into the picture. Does nothing if no knob has this name.
+    pub fn put(&mut self, name: &str, value: Value) {
+        let value = match value {
+            Value::Point(point) => Value::Point(in_picture(point, self.size)),
+            other => other,
+        };
+        if let Some(index) = self.knobs.iter().position(|knob| knob.name == name) {
+            self.values[index] = value;
+        }
+    }
+
+    /// Takes over the values of those knobs that `other` has too.
+    pub fn take_over(&mut self, other: &Self) {
+        for (knob, value) in other.iter() {
+            if self.find(knob.name).is_some_and(|own| own.kind == knob.kind) {
+                self.put(knob.name, value);
+            }
+        }
+    }
+
+    /// Those that do not stand at their defaults, as NAME=VALUE.
+    #[must_use]
+    pub fn changed(&self) -> Vec<String> {
+        let changed = self.iter().filter(|(knob, value)| *value != knob.default());
+        changed.map(|(knob, value)| format!("{}={}", knob.name, knob.shown(value))).collect()
+    }
+
+    fn value(&self, name: &str) -> Value {
+        let index = self.knobs.iter().position(|knob| knob.name == name);
+        self.values[index.unwrap_or_else(|| panic!("the table has no knob '{name}'"))]
+    }
+
+    /// The number of a knob.
+    ///
+    /// # Panics
+    /// If the table has no such number; that is a fault of the chapter. So do all that follow.
+    #[must_use]
+    pub fn number(&self, name: &str) -> f64 {
+        match self.value(name) {
+            Value::Number(value) => value,
+            other => panic!("'{name}' is no number but {other:?}"),
+        }
+    }
+
+    /// The whole number of a knob.
+    ///
+    /// # Panics
+    /// As [`Self::number`].
+    #[must_use]
+    pub fn whole(&self, name: &str) -> i32 {
+        match self.value(name) {
+            Value::Whole(value) => value,
+            other => panic!("'{name}' is no whole number but {other:?}"),
+        }
+    }
+
+    /// The name that a knob stands at.
+    ///
+    /// # Panics
+    /// As [`Self::number`].
+    #[must_use]
+    pub fn choice(&self, name: &str) -> &'static str {
+        match (self.find(name).map(|knob| knob.kind), self.value(name)) {
+            (Some(Kind::Choice(names)), Value::Choice(index)) => names[index],
+            (_, other) => panic!("'{name}' is no choice but {other:?}"),
+        }
+    }
+
+    /// Whether a switch is on.
+    ///
+    /// # Panics
+    /// As [`Self::number`].
+    #[must_use]
+    pub fn is_on(&self, name: &str) -> bool {
+        match self.value(name) {
+            Value::Switch(on) => on,
+            other => panic!("'{name}' is no switch but {other:?}"),
+        }
+    }
+
+    /// The point of a knob, pixels of the variant's own size, y up.
+    ///
+    /// # Panics
+    /// As [`Self::number`].
+    #[must_use]
+    pub fn point(&self, name: &str) -> DVec2 {
+        match self.value(name) {
+            Value::Point(point) => point,
+            other => panic!("'{name}' is no point but {other:?}"),
+        }
+    }
+
+    /// The color of a knob.
+    ///
+    /// # Panics
+    /// As [`Self::number`].
+    #[must_use]
+    pub fn color(&self, name: &str) -> Color {
+        match self.value(name) {
+            Value::Color(color) => color,
+            other => panic!("'{name}' is no color but {other:?}"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const KNOBS: &[Knob] = &[
+        Knob::number("tilt", 30.0, [0.0, 80.0], "°", "-"),
+        Knob::whole("bits", 4, [1, 8], "", "-"),
+        Knob::choice("rule", &["book", "top-left"], "-"),
+        Knob::switch("clip", true, "-"),
+        Knob::point("p", [3.5, 4.0], "-"),
+        Knob::color("paint", Color::RED, "-"),
+    ];
+
+    #[test]
+    fn texts_are_values_or_refused() {
+        let mut knobs = Knobs::new(KNOBS, (64, 48));
+        for good in ["tilt=0", "tilt=80", "bits=8", "rule=top-left", "clip=off", "p=64,48", "paint=#00ff7f"] {
+            assert_eq!(knobs.set(good), Ok(()), "{good}");
+        }
+        assert_eq!((knobs.number("tilt"), knobs.whole("bits"), knobs.choice("rule")), (80.0, 8, "top-left"));
+        assert_eq!((knobs.is_on("clip"), knobs.point("p")), (false, dvec2(64.0, 48.0)));
+        assert_eq!(knobs.color("paint"), Color::rgb(0, 255, 127));
+        assert_eq!(
+            knobs.changed(),
+            ["tilt=80", "bits=8", "rule=top-left", "clip=off", "p=64,48", "paint=#00ff7f"]
+        );
+        let before = knobs.clone();
+        for bad in [
+            "tilt",
+            "tilt=",
+            "tilt=81",
+            "tilt=-1",
+            "tilt=nan",
+            "tilt=inf",
+            "bits=9",
+            "bits=1.5",
+            "rule=other",
+            "clip=maybe",
+            "p=65,0",
+            "p=1",
+            "p=1,2,3",
+            "paint=#00ff7",
+            "paint=#00ff7g",
+            "other=1",
+            "=1",
+        ] {
+            assert!(knobs.set(bad).is_err(), "{bad}");
+        }
+        assert_eq!(knobs, before, "what is refused changes nothing");
+    }
+
+    #[test]
+    fn a_sweep_reaches_both_ends() {
+        let at = |index: usize, fraction: f64| KNOBS[index].at(fraction);
+        assert_eq!([at(0, 0.0), at(0, 0.5), at(0, 1.0)], [0.0, 40.0, 80.0].map(|v| Some(Value::Number(v))));
+        assert_eq!([at(1, 0.0), at(1, 0.5), at(1, 1.0)], [1, 5, 8].map(|v| Some(Value::Whole(v))));
+        assert_eq!([at(2, 0.0), at(2, 1.0)], [0, 1].map(|v| Some(Value::Choice(v))));
+        assert_eq!([at(3, 0.0), at(3, 1.0)], [false, true].map(|v| Some(Value::Switch(v))));
+        assert_eq!((at(4, 0.5), at(5, 0.5)), (None, None));
+    }
+
+    #[test]
+    fn steps_stay_in_range_or_go_round() {
+        let stepped = |index: usize, steps| KNOBS[index].stepped(KNOBS[index].default(), steps);
+        assert_eq!(stepped(0, 3), Value::Number(34.0));
+        assert_eq!(stepped(0, 1000), Value::Number(80.0));
+        assert_eq!(stepped(1, -9), Value::Whole(1));
+        assert_eq!(stepped(2, 1), Value::Choice(1));
+        assert_eq!(stepped(2, -1), Value::Choice(1));
+        assert_eq!((stepped(3, 1), stepped(3, 2)), (Value::Switch(false), Value::Switch(true)));
+        assert_eq!(stepped(4, 2), Value::Point(dvec2(5.5, 4.0)));
+        assert_eq!(stepped(5, 1), Value::Color(Color::rgb(255, 16, 16)));
+    }
+
+    #[test]
+    fn another_variant_takes_over_what_it_has() {
+        let mut first = Knobs::new(KNOBS, (64, 48));
+        first.set("tilt=50").expect("in range");
+        first.set("bits=2").expect("in range");
+        let mut second = Knobs::new(&KNOBS[..1], (64, 48));
+        second.take_over(&first);
+        assert_eq!(second.changed(), ["tilt=50"]);
+    }
+}

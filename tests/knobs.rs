@@ -1,0 +1,64 @@
+//! Every knob of every variant: turning it changes the picture, and both ends of its range can be drawn.
+
+#[path = "support/chapters.rs"]
+mod chapters;
+
+use chapters::CHAPTERS;
+use rasterbook::figure::{Given, Kind, Knob, Scene, Value, Variant};
+use rasterbook::{Color, Framebuffer};
+
+/// The picture with a knob at a value.
+fn with(variant: &Variant, knob: &Knob, value: Value) -> Framebuffer {
+    let mut scene = Scene::new(variant, &Given::default()).expect("its own model");
+    scene.knobs.put(knob.name, value);
+    scene.draw()
+}
+
+/// Values that a knob can have, both ends of its range among them.
+fn values(variant: &Variant, knob: &Knob) -> Vec<Value> {
+    let (width, height) = (f64::from(variant.size.0), f64::from(variant.size.1));
+    match (knob.kind, knob.default()) {
+        (Kind::Point(_), Value::Point(point)) => {
+            let corners = [[0.0, 0.0], [width, 0.0], [0.0, height], [width, height]];
+            let moved = Value::Point(point + glam::dvec2(31.0, 17.0));
+            corners.iter().map(|&corner| Value::Point(corner.into())).chain([moved]).collect()
+        }
+        (Kind::Color(_), _) => [Color::BLACK, Color::WHITE].map(Value::Color).to_vec(),
+        (Kind::Choice(names), _) => (0..names.len()).map(Value::Choice).collect(),
+        _ => [0.0, 0.37, 1.0].into_iter().filter_map(|fraction| knob.at(fraction)).collect(),
+    }
+}
+
+#[test]
+fn every_knob_changes_its_picture_over_its_whole_range() {
+    let mut count = 0;
+    for (chapter, _) in CHAPTERS {
+        for variant in chapter.variants {
+            let pinned = (!variant.knobs.is_empty())
+                .then(|| Scene::new(variant, &Given::default()).expect("its own model").draw());
+            for (knob, pinned) in variant.knobs.iter().zip(pinned.iter().cycle()) {
+                let pictures = values(variant, knob).into_iter().map(|value| with(variant, knob, value));
+                let changes = pictures.filter(|picture| picture != pinned).count();
+                assert!(changes > 0, "{} {}: '{}' changes nothing", chapter.name, variant.name, knob.name);
+                assert!(!knob.watch.is_empty() && knob.name == knob.name.to_lowercase());
+                count += 1;
+            }
+        }
+    }
+    assert!(count >= 6, "{count} knobs");
+}
+
+#[test]
+fn a_knob_reads_what_it_shows() {
+    for variant in CHAPTERS.iter().flat_map(|(chapter, _)| chapter.variants) {
+        let mut scene = Scene::new(variant, &Given::default()).expect("its own model");
+        for knob in variant.knobs {
+            for value in values(variant, knob).into_iter().chain([knob.default()]) {
+                let text = format!("{}={}", knob.name, knob.shown(value));
+                scene.knobs.set(&text).unwrap_or_else(|error| panic!("{}: {error}", variant.name));
+                let read = scene.knobs.iter().find(|(other, _)| other.name == knob.name).expect("is there").1;
+                assert_eq!(read, value, "{} {text}", variant.name);
+            }
+        }
+    }
+}
