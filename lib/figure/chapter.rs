@@ -53,6 +53,8 @@ pub struct Variant {
     pub animation: Option<Animation>,
     /// The rasterizer, unless `--rasterizer` says otherwise; figures without a pipeline have none.
     pub rasterizer: Option<RasterizerChoice>,
+    /// Whether it is about single pixels, and drawn in them whatever the size; all others are scenes, and scale to fit.
+    pub in_pixels: bool,
     figure: Figure,
 }
 
@@ -166,7 +168,8 @@ impl Variant {
             Figure::Canvas(_) | Figure::Model(..) => Some(RasterizerChoice::Scanline),
         };
         let (source, mistake) = ("", Mistake::No);
-        Self { name, look, source, size: (640, 480), mistake, animation: None, rasterizer, figure }
+        let (size, in_pixels) = ((640, 480), false);
+        Self { name, look, source, size, mistake, animation: None, rasterizer, in_pixels, figure }
     }
 
     /// The same, with the exact rasterizer.
@@ -203,6 +206,12 @@ impl Variant {
     #[must_use]
     pub const fn size(self, width: u32, height: u32) -> Self {
         Self { size: (width, height), ..self }
+    }
+
+    /// The same, but about single pixels: another size crops it or leaves a border, and does not scale it.
+    #[must_use]
+    pub const fn in_pixels(self) -> Self {
+        Self { in_pixels: true, ..self }
     }
 
     /// The same, with its section and figure of the book.

@@ -25,9 +25,11 @@
 pub mod assets;
 mod canvas;
 mod chapter;
+mod fit;
 pub mod picture;
 mod subject;
 
 pub use canvas::{Canvas, RasterizerChoice};
 pub use chapter::{Animation, Chapter, DrawOptions, Mistake, Variant};
+pub use fit::Fit;
 pub use subject::Subject;

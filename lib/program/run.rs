@@ -155,6 +155,10 @@ impl<'a> Job<'a> {
     fn new(variant: &'a Variant, request: &Request, given: &Given) -> Result<Self, Failure> {
         let size = request.size.unwrap_or(variant.size);
         check_zoom(size, request.zoom)?;
+        if variant.in_pixels && size != variant.size {
+            let name = variant.name;
+            note(&format!("'{name}' is drawn in pixels: the size only crops it or leaves a border black"));
+        }
         let own = variant.subject_with(request.normal_style()).map_err(runtime_failure)?;
         let subject = own.map(|own| match &given.model {
             // The chapters' own models are where they should be, and have their own texture.
