@@ -7,7 +7,7 @@
 
 use std::process::ExitCode;
 
-use rasterbook::figure::{Chapter, Variant, picture};
+use rasterbook::figure::{Chapter, Fit, Variant, picture};
 use rasterbook::{Color, Framebuffer, Rect};
 
 pub(crate) const CHAPTER: Chapter = Chapter {
@@ -25,7 +25,8 @@ pub(crate) const CHAPTER: Chapter = Chapter {
             pixel,
             "one red pixel at (200, 200), counted from the lower left corner; try --zoom 12@200,200",
         )
-        .source("section 1.4"),
+        .source("section 1.4")
+        .in_pixels(),
         Variant::new(
             "digit",
             digit,
@@ -77,9 +78,9 @@ const PAWN: [&str; 22] = [
 ];
 
 // ANCHOR: pawn
-/// A pawn on a screen of 16×22 pixels, each shown as a block of 20×20.
+/// A pawn on a screen of 16×22 pixels, each shown as a block: of 20×20, if the picture has 320×440.
 fn pawn(framebuffer: &mut Framebuffer) {
-    picture::draw_enlarged(framebuffer, (16, 22), 20, |screen| {
+    picture::draw_enlarged(framebuffer, (16, 22), |screen| {
         for (y, row) in (0..).zip(PAWN.iter().rev()) {
             for (x, letter) in (0..).zip(row.chars()) {
                 let color = match letter {
@@ -103,9 +104,9 @@ const DIGIT: [&str; 10] = [
 ];
 
 // ANCHOR: digit
-/// The digit 3 on a screen of 8×10 pixels, each shown as a block of 40×40.
+/// The digit 3 on a screen of 8×10 pixels.
 fn digit(framebuffer: &mut Framebuffer) {
-    picture::draw_enlarged(framebuffer, (8, 10), 40, |screen| {
+    picture::draw_enlarged(framebuffer, (8, 10), |screen| {
         for (y, row) in (0..).zip(DIGIT.iter().rev()) {
             for (x, lamp) in (0..).zip(row.chars()) {
                 let color = if lamp == '#' { Color::WHITE } else { Color::BLACK };
@@ -148,6 +149,8 @@ const COLORS: [[Color; 6]; 4] = [
 /// A screen of 6×4 pixels: the lamps, and what they add up to.
 fn subpixels(framebuffer: &mut Framebuffer) {
     const CELL: i32 = 52;
+    // Made for a picture of 632×208; in a larger one all rectangles are larger.
+    let fit = Fit::new(framebuffer.rect(), [632.0, 208.0]);
     framebuffer.clear(Color::gray(30));
     for (row, colors) in (0..).zip(COLORS.iter().rev()) {
         for (column, &color) in (0..).zip(colors) {
@@ -158,12 +161,13 @@ fn subpixels(framebuffer: &mut Framebuffer) {
             let lamps = [Color::rgb(red, 0, 0), Color::rgb(0, green, 0), Color::rgb(0, 0, blue)];
             for (i, lamp) in (0..).zip(lamps) {
                 let left = left + 2 + i * 16;
-                framebuffer
-                    .fill(Rect { left, bottom: bottom + 3, right: left + 14, top: bottom + CELL - 3 }, lamp);
+                let rect = Rect { left, bottom: bottom + 3, right: left + 14, top: bottom + CELL - 3 };
+                framebuffer.fill(fit.rect(rect), lamp);
             }
 
             let left = left + 6 * CELL + 8;
-            framebuffer.fill(Rect { left, bottom, right: left + CELL, top: bottom + CELL }, color);
+            let rect = Rect { left, bottom, right: left + CELL, top: bottom + CELL };
+            framebuffer.fill(fit.rect(rect), color);
         }
     }
 }

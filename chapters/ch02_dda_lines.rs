@@ -8,7 +8,7 @@
 use std::process::ExitCode;
 
 use glam::{DVec2, DVec3, dvec2};
-use rasterbook::figure::{Chapter, Subject, Variant};
+use rasterbook::figure::{Chapter, Fit, Subject, Variant};
 use rasterbook::line::{StepAxis, dda};
 use rasterbook::{Color, Framebuffer};
 
@@ -20,7 +20,8 @@ pub(crate) const CHAPTER: Chapter = Chapter {
             .source("section 2.1")
             .size(480, 480),
         Variant::new("line", line, "a vertical line: 300 pixels, one in each row, its upper end not drawn")
-            .source("section 2.1"),
+            .source("section 2.1")
+            .in_pixels(),
         Variant::new(
             "broken",
             broken,
@@ -74,8 +75,9 @@ const OCTANTS: [Color; 8] = [
 ];
 
 // ANCHOR: rays
-/// Rays from the middle to points all round a square, six in each octant.
+/// Rays from the middle to points all round a square, six in each octant. `fit` scales them to the size of the picture.
 fn rays(framebuffer: &mut Framebuffer, axis: StepAxis) {
+    let fit = Fit::new(framebuffer.rect(), [480.0, 480.0]);
     let center = dvec2(240.0, 240.0);
     for (octant, color) in OCTANTS.into_iter().enumerate() {
         for i in 0..6 {
@@ -83,7 +85,7 @@ fn rays(framebuffer: &mut Framebuffer, axis: StepAxis) {
             let along = 38.0 * f64::from(i);
             let ray = if octant % 2 == 0 { dvec2(228.0, along) } else { dvec2(228.0 - along, 228.0) };
             let ray = (0..octant / 2).fold(ray, |ray, _| ray.perp());
-            draw_line(framebuffer, center, center + ray, axis, color);
+            draw_line(framebuffer, fit.at(center), fit.at(center + ray), axis, color);
         }
     }
 }
@@ -92,7 +94,8 @@ fn rays(framebuffer: &mut Framebuffer, axis: StepAxis) {
 // ANCHOR: wireframe
 /// The edges of a model's triangles, seen along z: of each corner x and y are enough.
 fn wireframe(framebuffer: &mut Framebuffer, subject: &Subject) {
-    let on_screen = |point: DVec3| dvec2(240.0, 240.0) + point.truncate() * 135.0;
+    let fit = Fit::new(framebuffer.rect(), [480.0, 480.0]);
+    let on_screen = |point: DVec3| fit.at(dvec2(240.0, 240.0) + point.truncate() * 135.0);
     for part in &subject.model.parts {
         let vertices = part.mesh.vertices();
         for triangle in part.mesh.triangles() {

@@ -10,7 +10,7 @@ use std::process::ExitCode;
 
 use glam::dvec2;
 use rasterbook::exact::edge::Coverage;
-use rasterbook::figure::{Chapter, Variant, picture};
+use rasterbook::figure::{Chapter, Fit, Variant, picture};
 use rasterbook::interpolate::{ScreenVertex, step_values};
 use rasterbook::payload::{StepLimit, Walk};
 use rasterbook::texture::{AddressMode, Texture};
@@ -43,8 +43,9 @@ fn vertex<const N: usize>(x: f64, y: f64, values: [f64; N]) -> ScreenVertex<[f64
 // ANCHOR: gray
 /// One value a vertex, drawn as gray.
 fn gray(framebuffer: &mut Framebuffer) {
+    let fit = Fit::new(framebuffer.rect(), [640.0, 480.0]);
     let triangle = [vertex(100.0, 0.0, [0.0]), vertex(0.0, 100.0, [255.0]), vertex(100.0, 200.0, [0.0])];
-    step_values(triangle, Walk::default(), framebuffer.scissor(), |x, y, [value]| {
+    step_values(fit.triangle(triangle), Walk::default(), framebuffer.scissor(), |x, y, [value]| {
         framebuffer.set(x, y, Color::truncated([value; 3]));
     });
 }
@@ -53,12 +54,13 @@ fn gray(framebuffer: &mut Framebuffer) {
 // ANCHOR: rgb
 /// Three values a vertex, drawn as a color.
 fn rgb(framebuffer: &mut Framebuffer) {
+    let fit = Fit::new(framebuffer.rect(), [640.0, 480.0]);
     let triangle = [
         vertex(0.0, 0.0, [255.0, 0.0, 0.0]),
         vertex(240.0, 240.0, [0.0, 255.0, 0.0]),
         vertex(0.0, 480.0, [0.0, 0.0, 255.0]),
     ];
-    step_values(triangle, Walk::default(), framebuffer.scissor(), |x, y, values| {
+    step_values(fit.triangle(triangle), Walk::default(), framebuffer.scissor(), |x, y, values| {
         framebuffer.set(x, y, Color::truncated(values));
     });
 }
@@ -67,10 +69,11 @@ fn rgb(framebuffer: &mut Framebuffer) {
 // ANCHOR: texture
 /// Two values a vertex, drawn as the texel that they point to.
 fn texture(framebuffer: &mut Framebuffer) {
+    let fit = Fit::new(framebuffer.rect(), [640.0, 480.0]);
     let texture = Texture::book();
     let triangle =
         [vertex(0.0, 0.0, [0.0, 0.0]), vertex(480.0, 0.0, [1.0, 0.0]), vertex(0.0, 480.0, [0.0, 1.0])];
-    step_values(triangle, Walk::default(), framebuffer.scissor(), |x, y, uv| {
+    step_values(fit.triangle(triangle), Walk::default(), framebuffer.scissor(), |x, y, uv| {
         framebuffer.set(x, y, Color::truncated(texture.nearest(uv, AddressMode::Clamp)));
     });
 }
@@ -79,9 +82,10 @@ fn texture(framebuffer: &mut Framebuffer) {
 // ANCHOR: weights
 /// The three weights at every pixel as red, green and blue, with a line at every tenth.
 fn weights(framebuffer: &mut Framebuffer) {
+    let fit = Fit::new(framebuffer.rect(), [640.0, 480.0]);
+    let triangle = [dvec2(70.0, 50.0), dvec2(590.0, 130.0), dvec2(250.0, 440.0)];
     // The value of an edge function is twice the area of the small triangle over that edge.
-    let coverage =
-        Coverage::new([dvec2(70.0, 50.0), dvec2(590.0, 130.0), dvec2(250.0, 440.0)]).expect("area");
+    let coverage = Coverage::new(triangle.map(|vertex| fit.at(vertex))).expect("area");
     for (x, y, areas) in coverage.all_pixels(framebuffer.scissor()) {
         let weights = areas.map(|area| area as f64 / coverage.twice_area as f64);
         let inside = coverage.covers(areas);
@@ -118,7 +122,7 @@ fn limited(framebuffer: &mut Framebuffer) {
 /// Small triangles on a screen of 80×60 pixels, each at another fraction of a pixel. All vertices have values in 0..=1,
 /// drawn as dark to bright blue; a value outside that range is drawn in orange.
 fn confetti(framebuffer: &mut Framebuffer, limit: StepLimit) {
-    picture::draw_enlarged(framebuffer, (80, 60), 8, |screen| {
+    picture::draw_enlarged(framebuffer, (80, 60), |screen| {
         for (column, row) in (0..6).flat_map(|row| (0..7).map(move |column| (column, row))) {
             let (i, j) = (f64::from(column), f64::from(row));
             let (x, y) = (2.2 + 11.13 * i, 2.6 + 9.41 * j + 0.27 * i);

@@ -9,7 +9,7 @@
 use std::process::ExitCode;
 
 use glam::{DVec2, DVec3, DVec4, dvec2, dvec3};
-use rasterbook::figure::{Chapter, Variant};
+use rasterbook::figure::{Chapter, Fit, Variant};
 use rasterbook::line::{StepAxis, dda};
 use rasterbook::transform::{orthographic, perspective, perspective_divide};
 use rasterbook::{Color, Framebuffer, Rect};
@@ -28,9 +28,10 @@ pub(crate) const CHAPTER: Chapter = Chapter {
 };
 
 // ANCHOR: to_screen
-/// Divides, and moves the point where the camera looks to the middle of a picture of 640×480.
-fn to_screen(clip: DVec4) -> DVec2 {
-    dvec2(320.0, 240.0) + perspective_divide(clip).truncate()
+/// Divides, and moves the point where the camera looks to the middle of a picture of 640×480, scaled to `picture`.
+fn to_screen(clip: DVec4, picture: Rect) -> DVec2 {
+    let fit = Fit::new(picture, [640.0, 480.0]);
+    fit.at(dvec2(320.0, 240.0) + perspective_divide(clip).truncate())
 }
 
 /// Draws the segment between two points of space: it suffices to project its ends.
@@ -41,7 +42,7 @@ fn segment(
     b: DVec3,
     color: Color,
 ) {
-    let (a, b) = (to_screen(project(a)), to_screen(project(b)));
+    let [a, b] = [a, b].map(|point| to_screen(project(point), framebuffer.rect()));
     dda(a, b, StepAxis::Longer, framebuffer.scissor(), |x, y| framebuffer.set(x, y, color));
 }
 // ANCHOR_END: to_screen
@@ -124,13 +125,12 @@ fn rails(framebuffer: &mut Framebuffer) {
     }
 
     // Points on the rails, each projected by itself.
+    let fit = Fit::new(framebuffer.rect(), [640.0, 480.0]);
     for i in 0..10 {
         let z = first + 180.0 * f64::from(i);
         for (x, y) in [left, right] {
-            let p = to_screen(project(dvec3(x, y, z)));
-            let (x, y) = (p.x as i32, p.y as i32);
-            framebuffer
-                .fill(Rect { left: x - 1, bottom: y - 1, right: x + 2, top: y + 2 }, Color::rgb(255, 220, 0));
+            let point = to_screen(project(dvec3(x, y, z)), framebuffer.rect());
+            framebuffer.fill(fit.mark(point, 1.0), Color::rgb(255, 220, 0));
         }
     }
 }

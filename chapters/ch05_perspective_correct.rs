@@ -10,7 +10,7 @@ use std::process::ExitCode;
 
 use glam::{dvec2, dvec3};
 use rasterbook::exact::edge::Coverage;
-use rasterbook::figure::{Chapter, Variant};
+use rasterbook::figure::{Chapter, Fit, Variant};
 use rasterbook::interpolate::{
     Interpolation, Projected, ScreenVertex, perspective_weights, step_parameter, step_values,
 };
@@ -72,8 +72,10 @@ fn square_to(x: f64, z: f64) -> [Triangle; 2] {
 // ANCHOR: textured
 /// Draws triangles with the book's texture; `interpolation` is the option of this chapter.
 fn textured(framebuffer: &mut Framebuffer, triangles: &[Triangle], interpolation: Interpolation) {
+    let fit = Fit::new(framebuffer.rect(), [640.0, 480.0]);
     let texture = Texture::book();
     for &triangle in triangles {
+        let triangle = fit.triangle(triangle);
         step_parameter(triangle, interpolation, Walk::default(), framebuffer.scissor(), |x, y, point| {
             framebuffer.set(x, y, Color::truncated(texture.nearest(point.values, AddressMode::Clamp)));
         });
@@ -99,8 +101,10 @@ fn reciprocal(framebuffer: &mut Framebuffer) {
 // ANCHOR: barycentric
 /// The tilted square by weights, pixel by pixel; the weights of areas are corrected by ω.
 fn barycentric(framebuffer: &mut Framebuffer) {
+    let fit = Fit::new(framebuffer.rect(), [640.0, 480.0]);
     let texture = Texture::book();
     for triangle in square_to(TILTED_X, TILTED_Z) {
+        let triangle = fit.triangle(triangle);
         let coverage = Coverage::new(triangle.map(|corner| corner.position)).expect("area");
         for (x, y, areas) in coverage.pixels(framebuffer.scissor()) {
             let on_screen = areas.map(|area| area as f64 / coverage.twice_area as f64);
@@ -115,9 +119,11 @@ fn barycentric(framebuffer: &mut Framebuffer) {
 // ANCHOR: facing
 /// Draws triangles as chapter 3 does: values by equal steps on the screen, ω unused.
 fn textured_as_before(framebuffer: &mut Framebuffer, triangles: &[Triangle]) {
+    let fit = Fit::new(framebuffer.rect(), [640.0, 480.0]);
     let texture = Texture::book();
-    for triangle in triangles {
-        let triangle = triangle
+    for &triangle in triangles {
+        let triangle = fit
+            .triangle(triangle)
             .map(|vertex| ScreenVertex { position: vertex.position, varyings: vertex.varyings.values });
         step_values(triangle, Walk::default(), framebuffer.scissor(), |x, y, uv| {
             framebuffer.set(x, y, Color::truncated(texture.nearest(uv, AddressMode::Clamp)));
@@ -140,8 +146,10 @@ fn square(framebuffer: &mut Framebuffer) {
 // ANCHOR: floor
 /// A checkered floor of two triangles, from below our feet to far away.
 fn checkered_floor(framebuffer: &mut Framebuffer, interpolation: Interpolation) {
+    let fit = Fit::new(framebuffer.rect(), [640.0, 480.0]);
     framebuffer.clear(Color::rgb(70, 90, 70));
-    framebuffer.fill(Rect { bottom: 240, ..framebuffer.rect() }, Color::rgb(120, 170, 220));
+    let horizon = fit.at(dvec2(0.0, 240.0)).y as i32;
+    framebuffer.fill(Rect { bottom: horizon, ..framebuffer.rect() }, Color::rgb(120, 170, 220));
 
     // The camera is 100 above the floor and looks at the middle of a picture of 640×480.
     let corner = |x: f64, z: f64| {
@@ -153,6 +161,7 @@ fn checkered_floor(framebuffer: &mut Framebuffer, interpolation: Interpolation) 
 
     let texture = Texture::checkerboard(Color::rgb(50, 60, 80), Color::rgb(235, 235, 225));
     for triangle in [[near[0], near[1], far[0]], [near[1], far[1], far[0]]] {
+        let triangle = fit.triangle(triangle);
         step_parameter(triangle, interpolation, Walk::default(), framebuffer.scissor(), |x, y, point| {
             framebuffer.set(x, y, Color::truncated(texture.nearest(point.values, AddressMode::Repeat)));
         });

@@ -10,7 +10,7 @@ use std::process::ExitCode;
 
 use glam::{DVec2, dvec2, dvec3};
 use rasterbook::depth::{DepthEncoding, DepthTest, z_from_w};
-use rasterbook::figure::{Chapter, Variant};
+use rasterbook::figure::{Chapter, Fit, Variant};
 use rasterbook::interpolate::{Interpolation, Projected, ScreenVertex, step_parameter};
 use rasterbook::payload::Walk;
 use rasterbook::texture::{AddressMode, Texture};
@@ -65,6 +65,8 @@ fn draw<const N: usize>(
     color_of: impl Fn([f64; N]) -> Color,
 ) {
     let Target { color, depth } = target;
+    // The scenes are made for a picture of 640×480.
+    let triangle = Fit::new(color.rect(), [640.0, 480.0]).triangle(triangle);
     let (interpolation, walk) = (Interpolation::PerspectiveCorrect, Walk::default());
     step_parameter(triangle, interpolation, walk, color.scissor(), |x, y, point| {
         if depth.test_and_set(x, y, point.values[N - 1], test) {

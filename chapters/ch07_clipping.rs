@@ -12,12 +12,12 @@ use arrayvec::ArrayVec;
 use glam::{DVec4, dvec2, dvec3, dvec4};
 use rasterbook::clip::{ClipTest, ClipVolume, NdcVertex, Plane, clip_polygon, fan};
 use rasterbook::depth::DepthEncoding;
-use rasterbook::figure::{Chapter, Variant};
+use rasterbook::figure::{Chapter, Fit, Variant};
 use rasterbook::interpolate::{Projected, ScreenVertex};
 use rasterbook::line::{StepAxis, dda};
 use rasterbook::texture::{AddressMode, Texture};
 use rasterbook::transform::perspective;
-use rasterbook::{ClipVertex, Color, Framebuffer, Rect, Target};
+use rasterbook::{ClipVertex, Color, Framebuffer, Target};
 
 pub(crate) const CHAPTER: Chapter = Chapter {
     name: "ch07_clipping",
@@ -48,6 +48,8 @@ fn draw(
     to_screen: impl Fn(NdcVertex<2>) -> glam::DVec2,
     texel: impl Fn([f64; 2]) -> Color,
 ) {
+    // The scenes are made for a picture of 640×480.
+    let fit = Fit::new(target.color.rect(), [640.0, 480.0]);
     let planes = volume.planes(Default::default());
     for piece in fan(target.clip_triangle(triangle, &planes, ClipTest::BeforeDivide)) {
         let on_screen = piece.map(|vertex| {
@@ -56,7 +58,7 @@ fn draw(
             // a + b/z changes linearly on the screen: it is stepped beside t′, and needs no correction.
             ScreenVertex { position: to_screen(divided), varyings: (projected, divided.position.z) }
         });
-        target.fill(on_screen, &texel);
+        target.fill(fit.triangle(on_screen), &texel);
     }
 }
 // ANCHOR_END: draw
@@ -146,9 +148,10 @@ fn polygon(framebuffer: &mut Framebuffer) {
     let plane = Plane::homogeneous(dvec4(-1.0, 0.05, 0.0, 190.0));
     let kept: ArrayVec<ClipVertex<0>, 16> = clip_polygon(&outline, &plane, ClipTest::BeforeDivide);
 
+    let fit = Fit::new(framebuffer.rect(), [640.0, 480.0]);
+    let at = |point: DVec4| fit.at(dvec2(point.x, point.y));
     let line = |framebuffer: &mut Framebuffer, a: DVec4, b: DVec4, color| {
-        let [a, b] = [a, b].map(|p| dvec2(p.x, p.y));
-        dda(a, b, StepAxis::Longer, framebuffer.scissor(), |x, y| framebuffer.set(x, y, color));
+        dda(at(a), at(b), StepAxis::Longer, framebuffer.scissor(), |x, y| framebuffer.set(x, y, color));
     };
     let right = dvec4(330.0, 0.0, 0.0, 0.0);
     for shift in [DVec4::ZERO, right] {
@@ -169,8 +172,7 @@ fn polygon(framebuffer: &mut Framebuffer) {
         let enters = outline.contains(&kept[(i + 1) % kept.len()]);
         let color = if enters { Color::rgb(60, 220, 90) } else { Color::rgb(240, 60, 50) };
         for shift in [DVec4::ZERO, right] {
-            let (x, y) = ((cut.position.x + shift.x) as i32, cut.position.y as i32);
-            framebuffer.fill(Rect { left: x - 4, bottom: y - 4, right: x + 5, top: y + 5 }, color);
+            framebuffer.fill(fit.mark(at(cut.position + shift), 4.0), color);
         }
     }
 }

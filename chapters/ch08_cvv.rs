@@ -10,12 +10,12 @@ use std::process::ExitCode;
 
 use glam::{DVec2, DVec3, DVec4, dvec2, dvec3};
 use rasterbook::clip::{ClipTest, ClipVolume, DepthRange, NdcVertex, Plane, clip_triangle, fan};
-use rasterbook::figure::{Chapter, Variant};
+use rasterbook::figure::{Chapter, Fit, Variant};
 use rasterbook::interpolate::{Projected, ScreenVertex};
 use rasterbook::line::{StepAxis, dda};
 use rasterbook::texture::{AddressMode, Texture};
 use rasterbook::transform::{Frustum, Viewport, perspective_divide};
-use rasterbook::{ClipVertex, Color, Framebuffer, Rect, Target};
+use rasterbook::{ClipVertex, Color, Framebuffer, Target};
 
 pub(crate) const CHAPTER: Chapter = Chapter {
     name: "ch08_cvv",
@@ -156,25 +156,20 @@ fn draw_line(framebuffer: &mut Framebuffer, a: DVec2, b: DVec2, color: Color) {
     dda(a, b, StepAxis::Longer, framebuffer.scissor(), |x, y| framebuffer.set(x, y, color));
 }
 
-/// A square of pixels around a point.
-fn dot(framebuffer: &mut Framebuffer, point: DVec2, color: Color) {
-    let (x, y) = (point.x as i32, point.y as i32);
-    framebuffer.fill(Rect { left: x - 2, bottom: y - 2, right: x + 3, top: y + 3 }, color);
-}
-
 // ANCHOR: plane_by_plane
 /// The polygon in NDC after no plane, one, two, … six; in each panel the view is the square in the middle.
 fn planes(framebuffer: &mut Framebuffer) {
     const PANEL: f64 = 200.0;
     framebuffer.clear(Color::gray(24));
+    let fit = Fit::new(framebuffer.rect(), [4.0 * PANEL, 2.0 * PANEL]);
     let corners = [[-10_400.0, 2600.0, 90.0], [58.0, -245.0, 3.0], [820.0, 576.0, 8.0]];
     let triangle = corners.map(|view| ClipVertex { position: VIEW.project(DVec3::from(view)), varyings: [] });
     for count in 0..=6 {
         let middle = PANEL * dvec2(0.5 + (count % 4) as f64, if count < 4 { 1.5 } else { 0.5 });
-        let place = |vertex: &ClipVertex<0>| middle + perspective_divide(vertex.position).truncate() * 45.0;
+        let in_panel = |ndc: DVec2| fit.at(middle + ndc * 45.0);
+        let place = |vertex: &ClipVertex<0>| in_panel(perspective_divide(vertex.position).truncate());
 
-        let view = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
-            .map(|corner| middle + DVec2::from(corner) * 45.0);
+        let view = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|corner| in_panel(corner.into()));
         for i in 0..4 {
             draw_line(framebuffer, view[i], view[(i + 1) % 4], Color::gray(110));
         }
@@ -184,7 +179,7 @@ fn planes(framebuffer: &mut Framebuffer) {
             draw_line(framebuffer, place(vertex), place(next), Color::rgb(110, 190, 255));
         }
         for vertex in &polygon {
-            dot(framebuffer, place(vertex), Color::rgb(255, 200, 60));
+            framebuffer.fill(fit.mark(place(vertex), 2.0), Color::rgb(255, 200, 60));
         }
     }
 }
@@ -201,10 +196,11 @@ fn frustum(framebuffer: &mut Framebuffer) {
         Color::rgb(100, 160, 255),
     ];
     let view = Frustum { left: -1.0, right: 1.0, bottom: -1.0, top: 1.0, near: 2.0, far: 10.0 };
-    let in_camera = |p: DVec3| dvec2(190.0, 30.0) + dvec2(p.x, p.z) * 34.0;
+    let fit = Fit::new(framebuffer.rect(), [760.0, 400.0]);
+    let in_camera = |p: DVec3| fit.at(dvec2(190.0, 30.0) + dvec2(p.x, p.z) * 34.0);
     let in_ndc = |p: DVec3| {
         let ndc = perspective_divide(view.project(p));
-        dvec2(570.0, 200.0) + dvec2(ndc.x, ndc.z) * 150.0
+        fit.at(dvec2(570.0, 200.0) + dvec2(ndc.x, ndc.z) * 150.0)
     };
     let point = |column: i32, row: i32| {
         let z = 2.0 + 2.0 * f64::from(row);
@@ -219,7 +215,7 @@ fn frustum(framebuffer: &mut Framebuffer) {
         for (row, color) in (0..).zip(ROWS) {
             draw_line(framebuffer, place(point(0, row)), place(point(6, row)), color);
             for column in 0..7 {
-                dot(framebuffer, place(point(column, row)), color);
+                framebuffer.fill(fit.mark(place(point(column, row)), 2.0), color);
             }
         }
     }
@@ -227,7 +223,7 @@ fn frustum(framebuffer: &mut Framebuffer) {
     for column in [0, 6] {
         draw_line(framebuffer, in_camera(DVec3::ZERO), in_camera(point(column, 0)), Color::gray(60));
     }
-    dot(framebuffer, in_camera(DVec3::ZERO), Color::WHITE);
+    framebuffer.fill(fit.mark(in_camera(DVec3::ZERO), 2.0), Color::WHITE);
 }
 // ANCHOR_END: frustum
 

@@ -35,7 +35,27 @@ use std::fmt::Debug;
 use std::sync::Arc;
 
 use crate::color::Color;
-use crate::rect::Pixel;
+use crate::rect::{Pixel, Rect};
+
+/// A small screen that a picture shows, each of its pixels as a block of the picture's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Enlargement {
+    /// The pixels of the screen.
+    pub screen: Rect,
+    /// How many pixels of the picture a block is wide and high.
+    pub factor: u32,
+    /// The lower left pixel of the block that shows the pixel (0, 0) of the screen.
+    pub origin: Pixel,
+}
+
+impl Enlargement {
+    /// The pixel of the screen that a pixel of the picture shows; beside the blocks, one outside the screen.
+    #[must_use]
+    pub const fn pixel_at(self, (x, y): Pixel) -> Pixel {
+        let factor = self.factor as i32;
+        ((x - self.origin.0).div_euclid(factor), (y - self.origin.1).div_euclid(factor))
+    }
+}
 
 /// Somebody who watches the stages. Recording needs a cell or a lock: the stages share the observer.
 pub trait Observer: Debug {
@@ -48,8 +68,8 @@ pub trait Observer: Debug {
     /// A depth has been compared with the stored one.
     fn tested(&self, _pixel: Pixel, _depth: f64, _stored: f64, _passed: bool) {}
 
-    /// What follows happens on a screen of its own, each pixel of which is shown as `factor` × `factor` pixels.
-    fn enlarged(&self, _factor: u32) {}
+    /// What follows happens on a screen of its own, which the picture shows enlarged; with `None`, on the picture again.
+    fn enlarged(&self, _enlargement: Option<Enlargement>) {}
 
     /// A stage begins with something: a value of the stage's own type. What emits pixels says when it is [done](Self::done);
     /// a triangle that is [clipped](crate::clip::Assembled) is followed by its pieces instead.

@@ -14,7 +14,7 @@ use super::scanlines::triangle;
 pub(super) fn bounding_box(framebuffer: &mut Framebuffer) {
     let triangle = triangle([(5.3, 4.6), (35.2, 9.4), (15.8, 26.7)]);
     let coverage = Coverage::new(triangle).expect("a triangle with area");
-    picture::draw_enlarged(framebuffer, (40, 30), 16, |screen| {
+    picture::draw_enlarged(framebuffer, (40, 30), |screen| {
         let bounds = coverage.bounding_box(screen.rect());
         for (x, y, values) in coverage.all_pixels(screen.scissor().within(bounds)) {
             let tint = |value: i64| if value < 0 { 90 } else { 25 };
@@ -32,7 +32,7 @@ fn hexagon(framebuffer: &mut Framebuffer, pixels: impl Fn([DVec2; 3], Scissor, &
     // Every vertex lies on the center of a pixel, and so do many pixels on the seams between two triangles.
     let center = (19.5, 14.5);
     let rim = [(35.5, 14.5), (27.5, 26.5), (11.5, 26.5), (3.5, 14.5), (11.5, 2.5), (27.5, 2.5)];
-    picture::draw_enlarged(framebuffer, (40, 30), 16, |screen| {
+    picture::draw_enlarged(framebuffer, (40, 30), |screen| {
         for i in 0..6 {
             pixels(triangle([center, rim[i], rim[(i + 1) % 6]]), screen.scissor(), &mut |x, y| {
                 let before = screen.get(x, y).unwrap_or_default();

@@ -86,7 +86,7 @@ fn scene(framebuffer: &mut Framebuffer, pattern: &Pattern, shading: Shading) {
         let vertices = [tip, root - aside, root + aside].map(|point| [point.x, point.y, 1.0]);
         patches.push(Patch { vertices, paint: Paint::Plain(light) });
     }
-    picture::draw_enlarged(framebuffer, (80, 60), 7, |screen| {
+    picture::draw_enlarged(framebuffer, (80, 60), |screen| {
         let mut samples = Samples::like(screen, pattern);
         for patch in &patches {
             draw(&mut samples, patch, shading);

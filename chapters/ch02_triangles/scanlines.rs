@@ -1,9 +1,9 @@
 //! Triangles by rows: split at the middle vertex, walk up both sides, fill what lies between.
 
 use glam::{DVec2, DVec3, dvec2};
-use rasterbook::figure::Subject;
+use rasterbook::figure::{Fit, Subject};
 use rasterbook::scanline::{EdgeWalk, spans, split};
-use rasterbook::{Color, Framebuffer, Rect};
+use rasterbook::{Color, Framebuffer};
 
 // ANCHOR: fill
 /// Colors all pixels of a triangle.
@@ -23,14 +23,16 @@ pub(super) fn triangle(vertices: [(f64, f64); 3]) -> [DVec2; 3] {
 
 /// The book's triangle.
 pub(super) fn flat(framebuffer: &mut Framebuffer) {
+    let fit = Fit::new(framebuffer.rect(), [640.0, 480.0]);
     let triangle = triangle([(100.0, 0.0), (100.0, 300.0), (300.0, 0.0)]);
-    fill(framebuffer, triangle, EdgeWalk::Clamped, Color::RED);
+    fill(framebuffer, triangle.map(|vertex| fit.at(vertex)), EdgeWalk::Clamped, Color::RED);
 }
 
 // ANCHOR: split_in_two
 /// The halves in two colors; the vertices and P′ marked.
 pub(super) fn split_in_two(framebuffer: &mut Framebuffer) {
-    let triangle = triangle([(430.0, 40.0), (90.0, 190.0), (540.0, 440.0)]);
+    let fit = Fit::new(framebuffer.rect(), [640.0, 480.0]);
+    let triangle = triangle([(430.0, 40.0), (90.0, 190.0), (540.0, 440.0)]).map(|vertex| fit.at(vertex));
     let split = split(triangle).expect("a triangle with area");
     let halves = [(split.lower, Color::rgb(230, 120, 40)), (split.upper, Color::rgb(50, 110, 210))];
     for (half, color) in halves {
@@ -41,17 +43,12 @@ pub(super) fn split_in_two(framebuffer: &mut Framebuffer) {
         });
         for end in [half.left.start, half.left.end, half.right.start, half.right.end] {
             let is_new = !triangle.contains(&end);
-            mark(framebuffer, end, if is_new { Color::rgb(255, 230, 0) } else { Color::WHITE });
+            let color = if is_new { Color::rgb(255, 230, 0) } else { Color::WHITE };
+            framebuffer.fill(fit.mark(end, 4.0), color);
         }
     }
 }
 // ANCHOR_END: split_in_two
-
-/// A square of 9×9 pixels around a point.
-fn mark(framebuffer: &mut Framebuffer, point: DVec2, color: Color) {
-    let (x, y) = (point.x as i32, point.y as i32);
-    framebuffer.fill(Rect { left: x - 4, bottom: y - 4, right: x + 5, top: y + 5 }, color);
-}
 
 /// The tree with x free to leave its edges.
 pub(super) fn overshoot(framebuffer: &mut Framebuffer) {
@@ -64,18 +61,19 @@ pub(super) fn clamped(framebuffer: &mut Framebuffer) {
 }
 
 // ANCHOR: tree
-/// A fir tree. Each layer's base is level but for two thousandths of a pixel, so that one step of y moves x by 30,000 to 100,000.
+/// A fir tree. Each layer's base is level but for two thousandths of a pixel, so that one step of y moves x by 30,000 to
+/// 100,000, in a larger picture by more.
 fn tree(framebuffer: &mut Framebuffer, edges: EdgeWalk) {
+    let fit = Fit::new(framebuffer.rect(), [320.0, 320.0]);
     for i in 0..6 {
         let layer = f64::from(i);
         let (base, half_width) = (60.0 + 36.0 * layer, 100.0 - 14.0 * layer);
-        // The lower end is now on the left, now on the right.
-        let tilt = if i % 2 == 0 { 0.001 } else { -0.001 };
-        let triangle = triangle([
-            (160.0 - half_width, base - tilt),
-            (160.0 + half_width, base + tilt),
-            (160.0, base + 70.0),
-        ]);
+        let [left, right, top] =
+            triangle([(160.0 - half_width, base), (160.0 + half_width, base), (160.0, base + 70.0)])
+                .map(|vertex| fit.at(vertex));
+        // The base is on a whole row, whatever the size; its lower end is now on the left, now on the right.
+        let (base, tilt) = (left.y.round(), if i % 2 == 0 { 0.001 } else { -0.001 });
+        let triangle = [dvec2(left.x, base - tilt), dvec2(right.x, base + tilt), top];
         fill(framebuffer, triangle, edges, Color::rgb(20, 90 + 22 * i, 50));
     }
 }
@@ -92,11 +90,12 @@ pub(super) fn facets(framebuffer: &mut Framebuffer, subject: &Subject) {
     }
     triangles.sort_by(|a, b| depth_sum(b).total_cmp(&depth_sum(a)));
 
+    let fit = Fit::new(framebuffer.rect(), [480.0, 480.0]);
     for [a, b, c] in triangles {
         // The part of a face's normal that points to us: the cosine of the angle at which we see it.
         let facing = -(c - a).cross(b - a).normalize_or_zero().z;
         if facing > 0.0 {
-            let triangle = [a, b, c].map(|point| dvec2(240.0, 240.0) + point.truncate() * 135.0);
+            let triangle = [a, b, c].map(|point| fit.at(dvec2(240.0, 240.0) + point.truncate() * 135.0));
             fill(framebuffer, triangle, EdgeWalk::Clamped, Color::gray((40.0 + 215.0 * facing) as u8));
         }
     }

@@ -56,6 +56,8 @@ pub struct Variant {
     pub rasterizer: Option<RasterizerChoice>,
     /// What can be turned.
     pub knobs: &'static [Knob],
+    /// Whether it is about single pixels, and drawn in them whatever the size; all others are scenes, and scale to fit.
+    pub in_pixels: bool,
     figure: Figure,
 }
 
@@ -187,8 +189,8 @@ impl Variant {
             Figure::Canvas(_) | Figure::Model(..) => Some(RasterizerChoice::Scanline),
         };
         let (source, mistake) = ("", Mistake::No);
-        let size = (640, 480);
-        Self { name, look, source, size, mistake, animation: None, rasterizer, knobs: &[], figure }
+        let (size, in_pixels) = ((640, 480), false);
+        Self { name, look, source, size, mistake, animation: None, rasterizer, knobs: &[], in_pixels, figure }
     }
 
     /// The same, with the exact rasterizer.
@@ -231,6 +233,12 @@ impl Variant {
     #[must_use]
     pub const fn size(self, width: u32, height: u32) -> Self {
         Self { size: (width, height), ..self }
+    }
+
+    /// The same, but about single pixels: another size crops it or leaves a border, and does not scale it.
+    #[must_use]
+    pub const fn in_pixels(self) -> Self {
+        Self { in_pixels: true, ..self }
     }
 
     /// The same, with its section and figure of the book.

@@ -25,6 +25,7 @@
 pub mod assets;
 mod canvas;
 mod chapter;
+mod fit;
 mod knobs;
 pub mod picture;
 mod scene;
@@ -32,6 +33,7 @@ mod subject;
 
 pub use canvas::{Canvas, RasterizerChoice};
 pub use chapter::{Animation, Chapter, DrawOptions, Mistake, Variant};
+pub use fit::Fit;
 pub use knobs::{Kind, Knob, KnobError, Knobs, Value};
 pub use scene::{Given, Scene};
 pub use subject::Subject;

@@ -2,6 +2,7 @@
 
 use crate::color::Color;
 use crate::framebuffer::Framebuffer;
+use crate::observer::Enlargement;
 use crate::rect::{Pixel, Rect};
 
 /// How a picture is enlarged so that its pixels can be seen.
@@ -54,16 +55,13 @@ pub fn zoomed(picture: &Framebuffer, zoom: Zoom) -> Framebuffer {
     blocks(picture, zoom.part(picture.rect()), zoom.factor)
 }
 
-/// The block that shows a pixel of an enlarged screen; from a certain size on a line is left free beside it.
-pub(crate) const fn block((x, y): Pixel, factor: u32) -> Rect {
+/// The block that shows a pixel of an enlarged screen, the block of (0, 0) at `origin`; from a certain size on a line is
+/// left free beside it.
+pub(crate) const fn block((x, y): Pixel, factor: u32, origin: Pixel) -> Rect {
     let line = if factor >= Zoom::GRID_FROM { 1 } else { 0 };
     let factor = factor as i32;
-    Rect {
-        left: x * factor,
-        bottom: y * factor,
-        right: (x + 1) * factor - line,
-        top: (y + 1) * factor - line,
-    }
+    let (left, bottom) = (origin.0 + x * factor, origin.1 + y * factor);
+    Rect { left, bottom, right: left + factor - line, top: bottom + factor - line }
 }
 
 /// A part of a picture, each pixel as a block, with a thin grid if the blocks are large enough.
@@ -73,32 +71,38 @@ fn blocks(picture: &Framebuffer, part: Rect, factor: u32) -> Framebuffer {
     result.clear(GRID);
     for y in part.rows() {
         for x in part.columns() {
-            result
-                .fill(block((x - part.left, y - part.bottom), factor), picture.get(x, y).unwrap_or_default());
+            let block = block((x - part.left, y - part.bottom), factor, (0, 0));
+            result.fill(block, picture.get(x, y).unwrap_or_default());
         }
     }
     result
 }
 
-/// Draws on a screen of its own, `width` × `height` pixels, and shows each of them as a block of factor × factor.
+/// Draws on a screen of its own, `width` × `height` pixels, and shows each of them as a block, as large as all of them fit.
+///
+/// The screen comes to lie in the middle. Of one that is larger than the picture, the middle is shown.
 ///
 /// # Panics
 /// As [`Framebuffer::new`] does.
 pub fn draw_enlarged(
     into: &mut Framebuffer,
     (width, height): (u32, u32),
-    factor: u32,
     draw: impl FnOnce(&mut Framebuffer),
 ) {
     let mut screen = Framebuffer::new(width, height);
+    let factor = (into.width() / width).min(into.height() / height).max(1);
+    let rest = |side: u32, shown: u32| (side as i32 - (shown * factor) as i32).div_euclid(2);
+    let origin = (rest(into.width(), width), rest(into.height(), height));
+
     let observer = into.observer();
     screen.set_observer(observer.clone());
-    screen.report(|observer| observer.enlarged(factor));
+    let enlargement = Enlargement { screen: screen.rect(), factor, origin };
+    screen.report(|observer| observer.enlarged(Some(enlargement)));
     draw(&mut screen);
-    screen.report(|observer| observer.enlarged(1));
+    screen.report(|observer| observer.enlarged(None));
     // Writing the blocks is not reported.
     into.set_observer(None);
-    paste(into, &enlarged(&screen, factor), 0, 0);
+    paste(into, &enlarged(&screen, factor), origin.0, origin.1);
     into.set_observer(observer);
 }
 

@@ -12,6 +12,7 @@ use crate::clip::Assembled;
 use crate::color::Color;
 use crate::figure::{DrawOptions, Variant};
 use crate::framebuffer::Framebuffer;
+use crate::observer::Enlargement;
 use crate::probe::Piece;
 use crate::rect::{Pixel, Rect};
 
@@ -72,7 +73,7 @@ fn explain(events: &[Event], pixel: Pixel, picture: Rect) -> Findings {
     let mut explainer = Explainer {
         pixel,
         picture,
-        factor: 1,
+        enlargement: None,
         number: 0,
         assembled: None,
         piece: None,
@@ -109,7 +110,8 @@ fn ranges(numbers: &[usize]) -> String {
 struct Explainer<'a> {
     pixel: Pixel,
     picture: Rect,
-    factor: u32,
+    /// How the picture shows the current screen, if it is not the picture itself.
+    enlargement: Option<Enlargement>,
     /// Of triangles and lines, counted from 1.
     number: usize,
     assembled: Option<&'a Assembled>,
@@ -131,7 +133,7 @@ struct Explainer<'a> {
 impl<'a> Explainer<'a> {
     fn read(&mut self, event: &'a Event) {
         match event {
-            Event::Enlarged(factor) => self.enlarge(*factor),
+            Event::Enlarged(enlargement) => self.enlarge(*enlargement),
             Event::Cleared(color) => self.clear(*color),
             Event::Assembled(triangle) => {
                 self.end_triangle();
@@ -193,18 +195,25 @@ impl<'a> Explainer<'a> {
         }
     }
 
-    fn enlarge(&mut self, factor: u32) {
-        (self.factor, self.number, self.assembled) = (factor, 0, None);
-        if factor > 1 {
-            let (x, y) = within(self.pixel, factor);
-            let title = format!(
-                "A screen of its own, each pixel drawn as {factor}×{factor}: what follows is its pixel ({x}, {y})"
-            );
+    fn enlarge(&mut self, enlargement: Option<Enlargement>) {
+        (self.enlargement, self.number, self.assembled) = (enlargement, 0, None);
+        if let Some(Enlargement { factor, screen, .. }) = enlargement {
+            let (x, y) = self.here();
+            let place = if screen.contains(x, y) {
+                format!("what follows is its pixel ({x}, {y})")
+            } else {
+                "this pixel is beside it".to_owned()
+            };
+            let title = format!("A screen of its own, each pixel drawn as {factor}×{factor}: {place}");
             self.found.entries.push(Entry::new("enlarged", title));
         }
     }
 
     fn clear(&mut self, color: Color) {
+        let (x, y) = self.here();
+        if !self.screen().contains(x, y) {
+            return;
+        }
         self.found.color = color;
         let title = format!("The picture is cleared to {color:?}");
         self.found.entries.push(Entry::new("cleared", title));
@@ -215,12 +224,11 @@ impl<'a> Explainer<'a> {
 
     /// The pixel on the screen that is being drawn on.
     fn here(&self) -> Pixel {
-        within(self.pixel, self.factor)
+        within(self.pixel, self.enlargement)
     }
 
     fn screen(&self) -> Rect {
-        let [width, height] = [self.picture.right, self.picture.top].map(|side| side as u32 / self.factor);
-        Rect::sized(width, height)
+        self.enlargement.map_or(self.picture, |enlargement| enlargement.screen)
     }
 
     /// Sees that the running primitive has an entry, and in it a hit, a new one if that is wanted.
@@ -333,7 +341,7 @@ impl<'a> Explainer<'a> {
 
     fn done(&mut self) {
         if let Some(primitive) = self.primitive.take_if(|_| !self.is_open)
-            && let Some(reason) = miss(primitive, within(self.pixel, self.factor), self.screen())
+            && let Some(reason) = miss(primitive, self.here(), self.screen())
         {
             let name = if matches!(primitive, Primitive::Line(_)) { "line" } else { "triangle" };
             let piece = if self.pieces > 1 { format!(", piece {}", self.pieces) } else { String::new() };

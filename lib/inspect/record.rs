@@ -10,7 +10,7 @@ use crate::figure::{DrawOptions, Variant};
 use crate::framebuffer::Framebuffer;
 use crate::interpolate::ScreenTriangle;
 use crate::line::Line;
-use crate::observer::Observer;
+use crate::observer::{Enlargement, Observer};
 use crate::probe::{Fragment, Piece, Probe};
 use crate::rect::Pixel;
 use crate::scanline::HalfFill;
@@ -35,7 +35,7 @@ pub(super) enum Event {
         stored: f64,
         passed: bool,
     },
-    Enlarged(u32),
+    Enlarged(Option<Enlargement>),
     Begun(Primitive),
     /// A stage began that is not known here.
     Unknown,
@@ -90,14 +90,14 @@ struct Recorder {
 
 #[derive(Debug)]
 struct Record {
-    /// How large a pixel of the current screen is in the picture.
-    factor: u32,
+    /// How the picture shows the current screen, if it is not the picture itself.
+    enlargement: Option<Enlargement>,
     events: Vec<Event>,
 }
 
 impl Recorder {
     const fn new(watched: Option<Pixel>) -> Self {
-        Self { watched, record: Mutex::new(Record { factor: 1, events: Vec::new() }) }
+        Self { watched, record: Mutex::new(Record { enlargement: None, events: Vec::new() }) }
     }
 
     fn lock(&self) -> MutexGuard<'_, Record> {
@@ -110,17 +110,16 @@ impl Recorder {
 
     fn push_at(&self, pixel: Pixel, event: impl FnOnce() -> Event) {
         let mut record = self.lock();
-        let is_wanted = self.watched.is_none_or(|watched| within(watched, record.factor) == pixel);
+        let is_wanted = self.watched.is_none_or(|watched| within(watched, record.enlargement) == pixel);
         if is_wanted {
             record.events.push(event());
         }
     }
 }
 
-/// The pixel of an enlarged screen that a pixel of the picture shows.
-pub(super) fn within((x, y): Pixel, factor: u32) -> Pixel {
-    let factor = factor as i32;
-    (x.div_euclid(factor), y.div_euclid(factor))
+/// The pixel of the current screen that a pixel of the picture shows.
+pub(super) fn within(pixel: Pixel, enlargement: Option<Enlargement>) -> Pixel {
+    enlargement.map_or(pixel, |enlargement| enlargement.pixel_at(pixel))
 }
 
 impl Observer for Recorder {
@@ -136,10 +135,10 @@ impl Observer for Recorder {
         self.push_at(pixel, || Event::Tested { at: pixel, depth, stored, passed });
     }
 
-    fn enlarged(&self, factor: u32) {
+    fn enlarged(&self, enlargement: Option<Enlargement>) {
         let mut record = self.lock();
-        record.factor = factor;
-        record.events.push(Event::Enlarged(factor));
+        record.enlargement = enlargement;
+        record.events.push(Event::Enlarged(enlargement));
     }
 
     fn begun(&self, what: &dyn Any) {

@@ -75,12 +75,12 @@ impl Steps {
             frames: Vec::new(),
             last: picture,
         };
-        let (mut factor, mut primitive, mut row) = (1, 0, 0);
+        let (mut shown_by, mut primitive, mut row) = (None, 0, 0);
         let mut last: Option<Pixel> = None;
         let mut clipped: Option<&Assembled> = None;
         for event in events {
             match event {
-                Event::Enlarged(times) => factor = *times,
+                Event::Enlarged(enlargement) => shown_by = *enlargement,
                 Event::Assembled(triangle) => clipped = Some(triangle),
                 Event::Begun(begun) => {
                     (primitive, row, last) = (primitive + 1, row + 1, None);
@@ -90,7 +90,7 @@ impl Steps {
                     }
                 }
                 Event::Done => (primitive, row, last) = (primitive + 1, row + 1, None),
-                Event::Cleared(color) if factor == 1 => {
+                Event::Cleared(color) if shown_by.is_none() => {
                     (primitive, row) = (primitive + 1, row + 1);
                     steps.writes.push(Write {
                         rect: steps.last.rect(),
@@ -103,7 +103,8 @@ impl Steps {
                 Event::Written(pixel, color) => {
                     row += usize::from(last.is_some_and(|last| last.1 != pixel.1));
                     last = Some(*pixel);
-                    let rect = block(*pixel, factor);
+                    let (factor, origin) = shown_by.map_or((1, (0, 0)), |by| (by.factor, by.origin));
+                    let rect = block(*pixel, factor, origin);
                     steps.writes.push(Write { rect, color: *color, is_clear: false, row, primitive });
                 }
                 _ => {}

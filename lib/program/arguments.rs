@@ -294,7 +294,7 @@ fn how_to_draw(chapter: &Chapter) -> [Arg; 6] {
     let zoom = "Draw each pixel as N×N, around the pixel (X, Y), y up from the bottom; from 8 on with a grid";
     [
         option("out", "PATH", out).value_parser(value_parser!(PathBuf)),
-        option("size", "WxH", "Size of the picture in pixels, such as 1920x1080").value_parser(parse_size),
+        option("size", "WxH", size_help(chapter)).value_parser(parse_size),
         option("frame", "N", "Draw one frame of an animation [default: 0]")
             .value_parser(value_parser!(u32))
             .conflicts_with("all"),
@@ -314,6 +314,19 @@ fn how_to_draw(chapter: &Chapter) -> [Arg; 6] {
     ]
 }
 
+/// What `--size` does, and to which variants of the chapter it does less.
+fn size_help(chapter: &Chapter) -> String {
+    let help =
+        "Size of the picture in pixels, such as 1920x1080; scenes scale to fit, their proportions kept";
+    let in_pixels = chapter.variants.iter().filter(|variant| variant.in_pixels).map(|variant| variant.name);
+    match in_pixels.collect::<Vec<_>>().as_slice() {
+        [] => help.to_owned(),
+        names => {
+            format!("{help}, but drawn in pixels, and only cropped or given a border: {}", names.join(", "))
+        }
+    }
+}
+
 /// The variants of a chapter, a line each: name, then what to look for.
 pub(super) fn list(chapter: &Chapter) -> String {
     let width = chapter.variants.iter().map(|variant| variant.name.len()).max().unwrap_or(0);
@@ -324,7 +337,8 @@ pub(super) fn list(chapter: &Chapter) -> String {
             Mistake::WithoutRemedy => " [mistake]".to_owned(),
         };
         let source = if variant.source.is_empty() { String::new() } else { format!(" ({})", variant.source) };
-        format!("  {:width$}  {}{source}{mistake}\n", variant.name, variant.look)
+        let in_pixels = if variant.in_pixels { " [in pixels: --size does not scale it]" } else { "" };
+        format!("  {:width$}  {}{source}{mistake}{in_pixels}\n", variant.name, variant.look)
     };
     chapter.variants.iter().map(line).collect()
 }

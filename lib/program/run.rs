@@ -167,6 +167,10 @@ fn scene_of<'a>(variant: &'a Variant, request: &Request, given: &Given) -> Resul
 fn sized<'a>(variant: &'a Variant, request: &Request, given: &Given) -> Result<Scene<'a>, Failure> {
     let size = request.size.unwrap_or(variant.size);
     check_zoom(size, request.zoom)?;
+    if variant.in_pixels && size != variant.size {
+        let name = variant.name;
+        note(&format!("'{name}' is drawn in pixels: the size only crops it or leaves a border black"));
+    }
     let rasterizer = rasterizer_of(variant, request)?;
     Ok(Scene { size, rasterizer, ..Scene::new(variant, given).map_err(runtime_failure)? })
 }

@@ -1,0 +1,157 @@
+//! `--size` means the same for every variant: a scene scales, keeps its proportions and lies in the middle; what is about
+//! single pixels is the same picture with more or less around it.
+
+#[path = "support/chapters.rs"]
+mod chapters;
+
+use chapters::{CHAPTERS, variant};
+use rasterbook::figure::{DrawOptions, Variant};
+use rasterbook::inspect::{Steps, history};
+use rasterbook::{Color, Framebuffer, Pixel};
+use rayon::prelude::*;
+
+fn draw(variant: &Variant, size: (u32, u32)) -> Framebuffer {
+    let subject = variant.subject().expect("assets");
+    variant.draw(&DrawOptions { size, ..variant.options(subject.as_ref()) })
+}
+
+/// Looks at all variants that scale, or at all that do not, and collects what is wrong with them.
+fn all(in_pixels: bool, what_is_wrong: impl Fn(&Variant) -> Option<String> + Sync) {
+    let variants: Vec<_> = CHAPTERS
+        .iter()
+        .flat_map(|(chapter, _)| chapter.variants.iter().map(|variant| (chapter.name, variant)))
+        .filter(|(_, variant)| variant.in_pixels == in_pixels)
+        .collect();
+    let look = |(chapter, variant): &(&str, &Variant)| {
+        what_is_wrong(variant).map(|wrong| format!("{chapter} {}: {wrong}", variant.name))
+    };
+    let wrong: Vec<String> = variants.par_iter().filter_map(look).collect();
+    assert!(!variants.is_empty() && wrong.is_empty(), "{wrong:#?}");
+}
+
+/// How many pixels of `this` that are not like its first one show something that `that` does not show near the same place,
+/// and of how many; `that` is `factor` times as large.
+fn missing(this: &Framebuffer, that: &Framebuffer, factor: f64) -> (usize, usize) {
+    // From a certain size on there is a grid between enlarged pixels.
+    const GRID: Color = Color::gray(80);
+    let background = this.get(0, 0);
+    let reach = factor.ceil() as i32;
+    let (mut missing, mut count) = (0, 0);
+    for (x, y) in this.rect().rows().flat_map(|y| this.rect().columns().map(move |x| (x, y))) {
+        let Some(color) = this.get(x, y).filter(|color| Some(*color) != background && *color != GRID) else {
+            continue;
+        };
+        let [left, bottom] = [x, y].map(|along| (f64::from(along) * factor) as i32);
+        let mut near = (bottom - reach..=bottom + 2 * reach)
+            .flat_map(|y| (left - reach..=left + 2 * reach).map(move |x| (x, y)));
+        count += 1;
+        missing += usize::from(!near.any(|(x, y)| that.get(x, y).is_some_and(|it| is_like(it, color))));
+    }
+    (missing, count)
+}
+
+fn is_like(a: Color, b: Color) -> bool {
+    a.channels().into_iter().zip(b.channels()).all(|(a, b)| a.abs_diff(b) <= 24)
+}
+
+#[test]
+fn twice_as_large_a_scene_shows_the_same() {
+    all(false, |variant| {
+        let (width, height) = variant.size;
+        let (own, twice) = (draw(variant, variant.size), draw(variant, (2 * width, 2 * height)));
+        let wrong = [missing(&own, &twice, 2.0), missing(&twice, &own, 0.5)];
+        let is_wrong = wrong.iter().any(|&(missing, count)| missing * 50 > count || count < 100);
+        is_wrong.then(|| format!("(missing, of): {wrong:?}"))
+    });
+}
+
+#[test]
+fn in_other_proportions_a_scene_lies_undistorted_in_the_middle() {
+    all(false, |variant| {
+        let (width, height) = variant.size;
+        let own = draw(variant, variant.size);
+        let wrong = [(60, 0), (0, 60)].map(|(wider, higher)| {
+            let picture = draw(variant, (width + wider, height + higher));
+            let (left, bottom) = (wider as i32 / 2, higher as i32 / 2);
+            differing(&own, |x, y| picture.get(x + left, y + bottom))
+        });
+        // Other coordinates are rounded differently.
+        let most = (width * height / 2000) as usize;
+        wrong.iter().any(|&count| count > most).then(|| format!("{wrong:?} pixels differ"))
+    });
+}
+
+#[test]
+fn what_is_drawn_in_pixels_is_cropped_and_not_scaled() {
+    all(true, |variant| {
+        let own = draw(variant, variant.size);
+        let wrong = [(250, 250), (1000, 700)].map(|size| {
+            let picture = draw(variant, size);
+            differing(&picture, |x, y| own.get(x, y).or(Some(Color::BLACK)))
+        });
+        (wrong != [0, 0]).then(|| format!("{wrong:?} pixels differ"))
+    });
+}
+
+fn differing(picture: &Framebuffer, other: impl Fn(i32, i32) -> Option<Color>) -> usize {
+    let rect = picture.rect();
+    let pixels = rect.rows().flat_map(|y| rect.columns().map(move |x| (x, y)));
+    pixels.filter(|&(x, y)| picture.get(x, y) != other(x, y)).count()
+}
+
+#[test]
+fn no_size_is_too_small_or_too_odd() {
+    for in_pixels in [false, true] {
+        all(in_pixels, |variant| {
+            for size in [(1, 1), (3, 2), (1, 300), (300, 1), (17, 11)] {
+                let picture = draw(variant, size);
+                assert_eq!((picture.width(), picture.height()), size);
+            }
+            None
+        });
+    }
+}
+
+#[test]
+fn an_enlarged_screen_is_asked_where_it_is_shown() {
+    // The hexagon of 40×30 pixels, drawn as 16×16 each, as 24×24 with a border, and as 7×7 with another one.
+    let hexagon = variant("ch02_triangles", "top-left");
+    let inside: Pixel = (19, 14);
+    for (size, factor, origin) in
+        [((640, 480), 16, (0, 0)), ((1280, 720), 24, (160, 0)), ((300, 300), 7, (10, 45))]
+    {
+        let options = DrawOptions { size, ..hexagon.options(None) };
+        let at = (origin.0 + inside.0 * factor + 2, origin.1 + inside.1 * factor + 3);
+        let text = history("ch02_triangles", hexagon, &options, at).to_string();
+        let place = format!("each pixel drawn as {factor}×{factor}: what follows is its pixel (19, 14)");
+        let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(words.contains(&place) && words.contains("written"), "{size:?}: {text}");
+
+        // Each step that was recorded lies where the picture shows it: the last of them is the picture but for its grid.
+        let steps = Steps::new(hexagon, &options);
+        let (heat, _) = steps.overdraw();
+        let picture = hexagon.draw(&options);
+        assert_eq!(differing(&heat, |x, y| Some(heat_of(picture.get(x, y)))), 0, "{size:?}");
+
+        if origin != (0, 0) {
+            let text = history("ch02_triangles", hexagon, &options, (1, 1)).to_string();
+            assert!(text.contains("this pixel is beside it"), "{size:?}: {text}");
+        }
+    }
+}
+
+/// What the overdraw shows where the hexagon's picture has this color: black, or once.
+fn heat_of(color: Option<Color>) -> Color {
+    if color == Some(Color::rgb(60, 90, 130)) { Color::rgb(40, 70, 130) } else { Color::BLACK }
+}
+
+#[test]
+fn a_screen_that_is_too_large_is_cropped_around_its_middle() {
+    // 16×22 pixels in a picture of 6×8: columns 5 to 10, rows 7 to 14.
+    let pawn = variant("ch01_pixels", "pawn");
+    let (once, small) = (draw(pawn, (16, 22)), draw(pawn, (6, 8)));
+    assert_eq!(differing(&small, |x, y| once.get(x + 5, y + 7)), 0);
+    let history = history("ch01_pixels", pawn, &DrawOptions { size: (6, 8), ..pawn.options(None) }, (2, 3));
+    assert_eq!(Some(history.color()), once.get(7, 10));
+    assert_eq!(history.color(), history.last_color());
+}
