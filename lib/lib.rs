@@ -96,6 +96,7 @@
 //!   more tiled         the fast rasterizer: the same picture by tiles, lanes and threads
 //!   …    figure        a chapter's table, the canvas, pictures made of pictures, assets
 //!   …    inspect       the history of a pixel, steps, overdraw
+//!   …    live          a figure that is turned and looked at: events change it, a pure function draws it
 //!   …    program       what the eleven `main`s share; nothing above imports it
 //! ```
 //!
@@ -165,6 +166,8 @@ pub mod tiled;
 pub mod figure;
 #[cfg(feature = "figure")]
 pub mod inspect;
+#[cfg(feature = "figure")]
+pub mod live;
 #[cfg(feature = "program")]
 pub mod program;
 

@@ -44,6 +44,12 @@ impl Fit {
         self.origin + point * self.scale
     }
 
+    /// Which point of the scene is at a point of the picture.
+    #[must_use]
+    pub fn back(&self, point: DVec2) -> DVec2 {
+        (point - self.origin) / self.scale
+    }
+
     /// Where a triangle of the scene is in the picture; what its vertices carry stays.
     #[must_use]
     pub fn triangle<V>(&self, triangle: [ScreenVertex<V>; 3]) -> [ScreenVertex<V>; 3] {
@@ -97,6 +103,12 @@ mod tests {
             let rest = dvec2(viewport.width, viewport.height) - size;
             assert!(rest.min_element() > -1e-9 && rest.max_element() < 1.0, "{width}×{height}: {rest}");
         }
+    }
+
+    #[test]
+    fn there_and_back() {
+        let fit = Fit::new(Rect::sized(1920, 1080), [640.0, 480.0]);
+        assert_eq!(fit.back(fit.at(dvec2(12.0, 34.5))), dvec2(12.0, 34.5));
     }
 
     #[test]

@@ -25,13 +25,18 @@ impl Zoom {
     /// The part of a picture that is shown: around the center, moved so that it lies inside the picture.
     #[must_use]
     pub fn part(self, whole: Rect) -> Rect {
+        self.part_within(whole, Self::SHOWN)
+    }
+
+    /// The same, where the enlarged part fits into so many pixels.
+    pub(crate) fn part_within(self, whole: Rect, (width, height): (u32, u32)) -> Rect {
         let range = |center: Option<i32>, side: i32, shown: u32| {
-            let count = if self.factor == 1 { side } else { side.min((shown / self.factor) as i32) };
+            let count = if self.factor == 1 { side } else { side.min((shown / self.factor).max(1) as i32) };
             let first = (center.unwrap_or(side / 2) - count / 2).clamp(0, side - count);
             (first, first + count)
         };
-        let (left, right) = range(self.center.map(|(x, _)| x), whole.right, Self::SHOWN.0);
-        let (bottom, top) = range(self.center.map(|(_, y)| y), whole.top, Self::SHOWN.1);
+        let (left, right) = range(self.center.map(|(x, _)| x), whole.right, width);
+        let (bottom, top) = range(self.center.map(|(_, y)| y), whole.top, height);
         Rect { left, bottom, right, top }
     }
 }
@@ -65,7 +70,7 @@ pub(crate) const fn block((x, y): Pixel, factor: u32, origin: Pixel) -> Rect {
 }
 
 /// A part of a picture, each pixel as a block, with a thin grid if the blocks are large enough.
-fn blocks(picture: &Framebuffer, part: Rect, factor: u32) -> Framebuffer {
+pub(crate) fn blocks(picture: &Framebuffer, part: Rect, factor: u32) -> Framebuffer {
     let mut result =
         Framebuffer::new(part.columns().len() as u32 * factor, part.rows().len() as u32 * factor);
     result.clear(GRID);

@@ -44,6 +44,8 @@ pub(super) struct Request {
     pub(super) sweep: Option<String>,
     /// Whether the knobs are to be listed.
     pub(super) knobs: bool,
+    /// Whether a window is to be opened.
+    pub(super) window: bool,
 }
 
 /// The form of a history.
@@ -95,6 +97,7 @@ impl Request {
             settings: settings(&matches),
             sweep: text("sweep"),
             knobs: matches.get_flag("knobs"),
+            window: matches.get_flag("window"),
         })
     }
 
@@ -140,6 +143,7 @@ fn command(chapter: &Chapter) -> Command {
         .max_term_width(100)
         .version(env!("CARGO_PKG_VERSION"))
         .args(what_to_draw(chapter))
+        .arg(window())
         .args(how_to_draw(chapter))
         .args(knobs(chapter))
         .args(subject(chapter))
@@ -284,6 +288,15 @@ fn rasterizer(chapter: &Chapter) -> Arg {
     )
     .value_parser(parse)
     .hide(chapter.variants.iter().all(|variant| variant.rasterizer.is_none()))
+}
+
+/// A look at it.
+fn window() -> Arg {
+    switch(
+        "window",
+        "Open a window: turn knobs, drag points and models, look at single pixels; H tells the keys",
+    )
+    .conflicts_with_all(["all", "animate", "compare", "inspect", "steps", "overdraw", "knobs", "zoom"])
 }
 
 fn how_to_draw(chapter: &Chapter) -> [Arg; 6] {

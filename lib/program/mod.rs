@@ -10,6 +10,8 @@ mod output;
 mod palette;
 mod programs;
 mod run;
+#[cfg(feature = "window")]
+mod window;
 
 pub use failure::Failure;
 pub use programs::{PROGRAMS, Program};

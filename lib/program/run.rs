@@ -13,12 +13,14 @@ use super::output::{Destination, note, say};
 use super::programs::PROGRAMS;
 use crate::figure::picture::{Zoom, difference, side_by_side, zoomed};
 use crate::figure::{
-    Animation, Chapter, DrawOptions, Given, KnobError, Knobs, Mistake, RasterizerChoice, Scene, Subject,
-    Variant,
+    Animation, Chapter, DrawOptions, Given, Knob, KnobError, Knobs, Mistake, RasterizerChoice, Scene,
+    Subject, Variant,
 };
 use crate::files::{FileError, load_texture, shown};
 use crate::framebuffer::Framebuffer;
 use crate::inspect::{Steps, history};
+#[cfg(feature = "window")]
+use crate::live::{Event, Live};
 use crate::model::Model;
 use crate::rect::{Pixel, Rect};
 
@@ -70,6 +72,9 @@ fn run(chapter: &Chapter, request: &Request) -> Result<(), Failure> {
     if request.knobs {
         return say(&knob_list(variant));
     }
+    if request.window {
+        return open_window(chapter, variant, request, &destination);
+    }
     if let Some(pixel) = request.inspect {
         return inspect_pixel(chapter, variant, request, pixel);
     }
@@ -90,6 +95,31 @@ fn run(chapter: &Chapter, request: &Request) -> Result<(), Failure> {
             draw_comparison(variant, other(chapter, variant, comparison)?, request, &destination)
         }
     }
+}
+
+#[cfg(feature = "window")]
+fn open_window(
+    chapter: &Chapter,
+    variant: &Variant,
+    request: &Request,
+    destination: &Destination,
+) -> Result<(), Failure> {
+    let given = load(request, &[variant])?;
+    let mut live = Live::new(chapter, scene_of(variant, request, &given)?, given);
+    if let Some(name) = &request.sweep {
+        sweepable(variant, name)?;
+        live.take_knob(name);
+        live.apply(Event::Run).map_err(runtime_failure)?;
+    }
+    super::window::open(live, destination)
+}
+
+#[cfg(not(feature = "window"))]
+fn open_window(chapter: &Chapter, _: &Variant, _: &Request, _: &Destination) -> Result<(), Failure> {
+    let name = chapter.name;
+    Err(Failure::Usage(format!(
+        "this program was built without a window: cargo run --features window --bin {name} -- --window"
+    )))
 }
 
 /// The variant for those who have named none: the lead, or the first that can draw what was given instead of its own.
@@ -360,6 +390,16 @@ fn animate(variant: &Variant, request: &Request, destination: &Destination) -> R
     destination.write_animation(&name_of(variant, request), |format| encode(format, animation, &draw))
 }
 
+/// The knob of a name, if it has a range.
+fn sweepable(variant: &Variant, name: &str) -> Result<&'static Knob, Failure> {
+    let knob = variant.knobs.iter().find(|knob| knob.name == name);
+    let knob = knob.ok_or_else(|| not_set(variant, &KnobError::Unknown(name.to_owned())))?;
+    if knob.at(0.0).is_none() {
+        return Err(Failure::Usage(format!("'{name}' is {}: it has no range to be swept", knob.range())));
+    }
+    Ok(knob)
+}
+
 /// How many frames a sweep has, and how fast they are shown.
 const SWEEP: Animation = Animation { frames: 60, rate: 20 };
 
@@ -371,11 +411,7 @@ fn sweep(
     destination: &Destination,
 ) -> Result<(), Failure> {
     let name = request.sweep.as_deref().unwrap_or_default();
-    let knob = Knobs::new(variant.knobs, variant.size).find(name);
-    let knob = knob.ok_or_else(|| not_set(variant, &KnobError::Unknown(name.to_owned())))?;
-    if knob.at(0.0).is_none() {
-        return Err(Failure::Usage(format!("'{name}' is {}: it has no range to be swept", knob.range())));
-    }
+    let knob = sweepable(variant, name)?;
     let turned = |scene: &Scene<'_>, number: u32| {
         let mut options = scene.options(None);
         let value = knob.at(f64::from(number) / f64::from(SWEEP.frames - 1));

@@ -1,0 +1,588 @@
+//! Beside the renderer: a figure that is turned and looked at.
+//!
+//! Events change what is looked at, and a pure function of it draws. No window, no terminal and no page is known here:
+//! they translate their keys and buttons into [`Event`]s, and show the [`Live::picture`].
+//!
+//! ```text
+//!   keys, mouse ── Event ──▶ Live ── picture() ──▶ pixels
+//!                             │
+//!                             └──── history(pixel), status() ──▶ words
+//! ```
+
+use glam::{DVec2, dvec2};
+
+use crate::color::Color;
+use crate::figure::picture::{Zoom, blocks, difference};
+use crate::figure::{Chapter, Fit, Given, Knob, Mistake, RasterizerChoice, Scene, Value, Variant};
+use crate::files::FileError;
+use crate::framebuffer::Framebuffer;
+use crate::inspect::{History, Steps, history};
+use crate::rect::{Pixel, Rect};
+
+/// What somebody does. Pixels are those of the picture that is shown, y up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Event {
+    /// Shows the variant of this place in the chapter's table; nothing happens if there is none.
+    Variant(usize),
+    /// Shows the variant so many places further on, round and round.
+    NextVariant(i32),
+    /// Takes hold of the knob so many places further on, round and round.
+    NextKnob(i32),
+    /// Turns the knob that is held by so many steps.
+    Turn(i32),
+    /// Sets all knobs to their defaults, the first frame and no magnification.
+    Reset,
+    /// Shows another view, or the variant itself if that view is shown already.
+    Show(View),
+    /// Lets the animation run, or the knob that is held go to and fro through its range; or stops it.
+    Run,
+    /// Shows one step more of what runs. Whoever shows the picture sends it [`Live::rate`] times a second.
+    Tick,
+    /// Draws with the next rasterizer, where there is a choice.
+    NextRasterizer,
+    /// Magnifies by so many notches of a wheel around a pixel, or the reverse.
+    Magnify(i32, Pixel),
+    /// A button goes down at a pixel: takes hold of a point nearby, or of a model.
+    Press(Pixel),
+    /// The pointer moves to a pixel while the button is down.
+    Drag(Pixel),
+    /// The button goes up.
+    Release,
+}
+
+/// What is shown of a variant.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum View {
+    /// The variant itself.
+    #[default]
+    Itself,
+    /// The remedy of a mistake, its knobs at the same values.
+    Remedy,
+    /// Where the two differ.
+    Difference,
+    /// How often each pixel was written.
+    Overdraw,
+}
+
+/// What a button holds while it is down.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Held {
+    /// A point, by its index among the knobs.
+    Point(usize),
+    /// The model: where the pointer was.
+    Model(Pixel),
+    /// Nothing that can be moved.
+    Nothing,
+}
+
+/// What moves by itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Motion {
+    Frames,
+    /// A knob on its way, so many steps after the beginning of its range.
+    Sweep(u32),
+}
+
+/// Steps of a knob through its range, one way.
+const SWEEP_STEPS: u32 = 60;
+/// Degrees that the eye goes round when a model is dragged by a pixel.
+const DEGREES_PER_PIXEL: f64 = 0.5;
+/// Magnifications, one a notch.
+const FACTORS: [u32; 11] = [1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 64];
+
+/// A figure, and how it is looked at.
+#[derive(Debug)]
+pub struct Live<'a> {
+    chapter: &'a Chapter,
+    given: Given,
+    scene: Scene<'a>,
+    view: View,
+    knob: usize,
+    motion: Option<Motion>,
+    magnification: usize,
+    center: Pixel,
+    held: Option<Held>,
+}
+
+impl<'a> Live<'a> {
+    /// Looks at a scene of a chapter; `given` is what other variants draw in place of their own models.
+    #[must_use]
+    pub fn new(chapter: &'a Chapter, scene: Scene<'a>, given: Given) -> Self {
+        let (view, knob, motion, magnification, center, held) = (View::Itself, 0, None, 0, (0, 0), None);
+        Self { chapter, given, scene, view, knob, motion, magnification, center, held }
+    }
+
+    /// What is looked at.
+    #[must_use]
+    pub const fn scene(&self) -> &Scene<'a> {
+        &self.scene
+    }
+
+    /// What is shown of it.
+    #[must_use]
+    pub const fn view(&self) -> View {
+        self.view
+    }
+
+    /// The knob that is held, and its value.
+    #[must_use]
+    pub fn knob(&self) -> Option<(&'static Knob, Value)> {
+        self.scene.knobs.iter().nth(self.knob)
+    }
+
+    /// Whether the button is down.
+    #[must_use]
+    pub const fn is_held(&self) -> bool {
+        self.held.is_some()
+    }
+
+    /// Takes hold of the knob of a name, if there is one.
+    pub fn take_knob(&mut self, name: &str) {
+        if let Some(index) = self.scene.variant.knobs.iter().position(|knob| knob.name == name) {
+            self.knob = index;
+        }
+    }
+
+    /// How often in a second something moves by itself; `None` if nothing does.
+    #[must_use]
+    pub fn rate(&self) -> Option<u32> {
+        match self.motion? {
+            Motion::Frames => self.scene.variant.animation.map(|animation| animation.rate),
+            Motion::Sweep(_) => Some(30),
+        }
+    }
+
+    /// The variant that is the remedy of the one that is looked at.
+    #[must_use]
+    pub fn remedy(&self) -> Option<&'a Variant> {
+        match self.scene.variant.mistake {
+            Mistake::RemediedBy(name) => self.chapter.find(name),
+            Mistake::No | Mistake::WithoutRemedy => None,
+        }
+    }
+
+    /// Does what an event says. Gives whether the picture may have changed.
+    ///
+    /// # Errors
+    /// If a variant's own model is not in `assets/`.
+    pub fn apply(&mut self, event: Event) -> Result<bool, FileError> {
+        match event {
+            Event::Variant(index) => return self.look_at(index),
+            Event::NextVariant(places) => {
+                let count = self.chapter.variants.len();
+                return self.look_at(moved(self.place(), places, count));
+            }
+            Event::NextKnob(places) => {
+                self.knob = moved(self.knob, places, self.scene.variant.knobs.len());
+                self.motion = self.motion.filter(|motion| *motion == Motion::Frames);
+                return Ok(false);
+            }
+            Event::Turn(steps) => self.turn(steps),
+            Event::Reset => self.reset(),
+            Event::Show(view) => self.show(view),
+            Event::Run => self.run(),
+            Event::Tick => self.tick(),
+            Event::NextRasterizer => self.next_rasterizer(),
+            Event::Magnify(notches, pixel) => self.magnify(notches, pixel),
+            Event::Press(pixel) => self.press(pixel),
+            Event::Drag(pixel) => self.drag(pixel),
+            Event::Release => self.held = None,
+        }
+        Ok(!matches!(event, Event::Press(_) | Event::Release))
+    }
+
+    /// Where the variant stands in the chapter's table.
+    fn place(&self) -> usize {
+        self.chapter.variants.iter().position(|variant| variant.name == self.scene.variant.name).unwrap_or(0)
+    }
+
+    /// Looks at another variant; knobs that it has too keep their values, and so does a size that was asked for.
+    fn look_at(&mut self, index: usize) -> Result<bool, FileError> {
+        let Some(variant) = self.chapter.variants.get(index) else {
+            return Ok(false);
+        };
+        let (before, knob) = (self.scene.variant, self.knob().map(|(knob, _)| knob.name));
+        let mut scene = Scene::new(variant, &self.given)?;
+        scene.knobs.take_over(&self.scene.knobs);
+        if self.scene.size != before.size {
+            scene.size = self.scene.size;
+        }
+        *self = Self::new(self.chapter, scene, std::mem::take(&mut self.given));
+        self.take_knob(knob.unwrap_or_default());
+        Ok(true)
+    }
+
+    fn turn(&mut self, steps: i32) {
+        if let Some((knob, value)) = self.knob() {
+            self.scene.knobs.put(knob.name, knob.stepped(value, steps));
+        }
+    }
+
+    fn reset(&mut self) {
+        for knob in self.scene.variant.knobs {
+            self.scene.knobs.put(knob.name, knob.default());
+        }
+        (self.scene.frame, self.magnification, self.motion) = (0, 0, None);
+    }
+
+    fn show(&mut self, view: View) {
+        let needs_remedy = matches!(view, View::Remedy | View::Difference);
+        self.view =
+            if self.view == view || (needs_remedy && self.remedy().is_none()) { View::Itself } else { view };
+    }
+
+    fn run(&mut self) {
+        let can_sweep = self.knob().is_some_and(|(knob, _)| knob.at(0.0).is_some());
+        self.motion = match self.motion {
+            Some(_) => None,
+            None if self.scene.variant.animation.is_some() => Some(Motion::Frames),
+            None if can_sweep => Some(Motion::Sweep(0)),
+            None => None,
+        };
+    }
+
+    fn tick(&mut self) {
+        match self.motion {
+            Some(Motion::Frames) => {
+                let frames = self.scene.variant.animation.map_or(1, |animation| animation.frames);
+                self.scene.frame = (self.scene.frame + 1) % frames;
+            }
+            Some(Motion::Sweep(step)) => {
+                let fraction = f64::from(SWEEP_STEPS - step.abs_diff(SWEEP_STEPS)) / f64::from(SWEEP_STEPS);
+                let swept = self.knob().and_then(|(knob, _)| Some((knob, knob.at(fraction)?)));
+                if let Some((knob, value)) = swept {
+                    self.scene.knobs.put(knob.name, value);
+                }
+                self.motion = Some(Motion::Sweep((step + 1) % (2 * SWEEP_STEPS)));
+            }
+            None => {}
+        }
+    }
+
+    fn next_rasterizer(&mut self) {
+        if self.scene.variant.rasterizer.is_some() {
+            let all = RasterizerChoice::ALL;
+            let place = all.iter().position(|choice| *choice == self.scene.rasterizer).unwrap_or(0);
+            self.scene.rasterizer = all[moved(place, 1, all.len())];
+        }
+    }
+
+    fn magnify(&mut self, notches: i32, pixel: Pixel) {
+        if let Some(center) = self.pixel_at(pixel) {
+            self.center = center;
+        }
+        let last = FACTORS.len() as i32 - 1;
+        self.magnification = (self.magnification as i32).saturating_add(notches).clamp(0, last) as usize;
+    }
+
+    fn press(&mut self, pixel: Pixel) {
+        let Some(pixel) = self.pixel_at(pixel) else {
+            self.held = Some(Held::Nothing);
+            return;
+        };
+        let place = self.in_scene(pixel);
+        let distance = |value: Value| match value {
+            Value::Point(point) => Some(point.distance(place)),
+            _ => None,
+        };
+        let points = self.scene.knobs.iter().enumerate();
+        let near = points.filter_map(|(index, (_, value))| Some((index, distance(value)?)));
+        let nearest = near.min_by(|(_, a), (_, b)| a.total_cmp(b));
+        let reach = f64::from(self.scene.variant.size.0) / 20.0;
+        self.held = Some(match nearest {
+            Some((index, distance)) if distance <= reach => {
+                self.knob = index;
+                Held::Point(index)
+            }
+            _ if self.scene.knobs.find("azimuth").is_some() => Held::Model(pixel),
+            _ => Held::Nothing,
+        });
+    }
+
+    fn drag(&mut self, pixel: Pixel) {
+        let Some(pixel) = self.pixel_at(pixel) else {
+            return;
+        };
+        match self.held {
+            Some(Held::Point(index)) => {
+                let name = self.scene.variant.knobs[index].name;
+                self.scene.knobs.put(name, Value::Point(self.in_scene(pixel)));
+            }
+            Some(Held::Model(from)) => {
+                let by = dvec2(f64::from(pixel.0 - from.0), f64::from(pixel.1 - from.1)) * DEGREES_PER_PIXEL;
+                // The model follows the pointer, so the eye goes the other way.
+                self.orbit("azimuth", -by.x, true);
+                self.orbit("elevation", -by.y, false);
+                self.held = Some(Held::Model(pixel));
+            }
+            Some(Held::Nothing) | None => {}
+        }
+    }
+
+    /// Turns an angle by so many degrees; round and round, or to the end of its range.
+    fn orbit(&mut self, name: &str, degrees: f64, round: bool) {
+        let angle = self.scene.knobs.iter().find(|(knob, _)| knob.name == name);
+        if let Some((knob, Value::Number(angle))) = angle {
+            let turned = angle + degrees;
+            let turned = if round { (turned + 180.0).rem_euclid(360.0) - 180.0 } else { turned };
+            let (low, high) = (knob.at(0.0), knob.at(1.0));
+            if let (Some(Value::Number(low)), Some(Value::Number(high))) = (low, high) {
+                self.scene.knobs.put(name, Value::Number(turned.clamp(low, high)));
+            }
+        }
+    }
+
+    /// A pixel of the scene's picture as a point of its variant's own size.
+    fn in_scene(&self, (x, y): Pixel) -> DVec2 {
+        let point = dvec2(f64::from(x), f64::from(y));
+        if self.scene.variant.in_pixels {
+            return point;
+        }
+        let (width, height) = self.scene.variant.size;
+        Fit::new(self.whole(), [width.into(), height.into()]).back(point)
+    }
+
+    const fn whole(&self) -> Rect {
+        Rect::sized(self.scene.size.0, self.scene.size.1)
+    }
+
+    /// The part of the picture that is shown, and how large its pixels are.
+    fn part(&self) -> (Rect, u32) {
+        let factor = FACTORS[self.magnification];
+        (Zoom { factor, center: Some(self.center) }.part_within(self.whole(), self.scene.size), factor)
+    }
+
+    /// Which pixel of the scene's picture a pixel of the picture that is shown belongs to; `None` outside of it.
+    #[must_use]
+    pub fn pixel_at(&self, (x, y): Pixel) -> Option<Pixel> {
+        let (part, factor) = self.part();
+        let pixel = (part.left + x.div_euclid(factor as i32), part.bottom + y.div_euclid(factor as i32));
+        part.contains(pixel.0, pixel.1).then_some(pixel)
+    }
+
+    /// The scene that is the remedy: the same knobs, size, frame and rasterizer.
+    fn remedied(&self) -> Option<Scene<'a>> {
+        let mut scene = Scene::new(self.remedy()?, &self.given).ok()?;
+        scene.knobs.take_over(&self.scene.knobs);
+        let Scene { frame, size, rasterizer, .. } = self.scene;
+        Some(Scene { frame, size, rasterizer, ..scene })
+    }
+
+    /// The whole picture, not magnified.
+    #[must_use]
+    pub fn whole_picture(&self) -> Framebuffer {
+        match (self.view, self.remedied()) {
+            (View::Overdraw, _) => Steps::new(self.scene.variant, &self.scene.options(None)).overdraw().0,
+            (View::Remedy, Some(remedied)) => remedied.draw(),
+            (View::Difference, Some(remedied)) => {
+                let this = self.scene.draw();
+                difference(&this, &remedied.draw()).map_or(this, |(marked, _)| marked)
+            }
+            _ => self.scene.draw(),
+        }
+    }
+
+    /// What is shown: the picture, or a part of it with large pixels and a grid.
+    #[must_use]
+    pub fn picture(&self) -> Framebuffer {
+        let whole = self.whole_picture();
+        match self.part() {
+            (_, 1) => whole,
+            (part, factor) => blocks(&whole, part, factor),
+        }
+    }
+
+    /// All that happened at a pixel of the scene's picture; of the remedy's, if that is shown.
+    #[must_use]
+    pub fn history(&self, pixel: Pixel) -> History {
+        let remedied = self.remedied().filter(|_| self.view == View::Remedy);
+        let scene = remedied.as_ref().unwrap_or(&self.scene);
+        history(self.chapter.name, scene.variant, &scene.options(None), pixel).without_misses()
+    }
+
+    /// What is shown, in a line: `affine · tilt = 30 ° · 4×`.
+    #[must_use]
+    pub fn status(&self) -> String {
+        let mut parts = vec![match (self.view, self.remedy()) {
+            (View::Remedy, Some(remedy)) => format!("{}: remedy of {}", remedy.name, self.scene.variant.name),
+            (View::Difference, Some(remedy)) => {
+                format!("{} | {}: difference", self.scene.variant.name, remedy.name)
+            }
+            (View::Overdraw, _) => format!("{}: overdraw", self.scene.variant.name),
+            _ => self.scene.variant.name.to_owned(),
+        }];
+        parts.extend(self.knob().map(|(knob, value)| format!("{} = {}", knob.name, knob.shown(value))));
+        if self.scene.variant.animation.is_some() {
+            parts.push(format!("frame {}", self.scene.frame));
+        }
+        if self.scene.variant.rasterizer.is_some() {
+            parts.push(self.scene.rasterizer.name().to_owned());
+        }
+        if self.magnification > 0 {
+            parts.push(format!("{}×", FACTORS[self.magnification]));
+        }
+        parts.join(" · ")
+    }
+
+    /// A pixel in words: `(60, 120) #00ff00`.
+    #[must_use]
+    pub fn told((x, y): Pixel, color: Color) -> String {
+        let [red, green, blue] = color.channels();
+        format!("({x}, {y}) #{red:02x}{green:02x}{blue:02x}")
+    }
+}
+
+/// A place so many places further on, round and round.
+fn moved(place: usize, places: i32, count: usize) -> usize {
+    (place as i64 + i64::from(places)).rem_euclid(count.max(1) as i64) as usize
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::{Animation, Canvas, Knobs};
+
+    const KNOBS: &[Knob] =
+        &[Knob::number("level", 100.0, [0.0, 240.0], "", "-"), Knob::point("dot", [4.0, 6.0], "-")];
+
+    /// A gray picture with a white dot; that of the mistake is one pixel too far to the right.
+    fn dot(picture: &mut Framebuffer, knobs: &Knobs, shift: i32) {
+        picture.clear(Color::gray(knobs.number("level") as u8));
+        let at = Fit::new(picture.rect(), [40.0, 30.0]).at(knobs.point("dot"));
+        picture.set(at.x as i32 + shift, at.y as i32, Color::WHITE);
+    }
+
+    fn right(picture: &mut Framebuffer, knobs: &Knobs) {
+        dot(picture, knobs, 0);
+    }
+
+    fn wrong(picture: &mut Framebuffer, knobs: &Knobs) {
+        dot(picture, knobs, 1);
+    }
+
+    fn moving(canvas: &mut Canvas) {
+        let level = 10 * canvas.frame as u8;
+        canvas.picture_mut().clear(Color::gray(level));
+    }
+
+    const CHAPTER: Chapter = Chapter {
+        name: "ch00",
+        question: "?",
+        variants: &[
+            Variant::with_knobs("wrong", wrong, KNOBS, "-").size(40, 30).remedied_by("right"),
+            Variant::with_knobs("right", right, KNOBS, "-").size(40, 30),
+            Variant::with_pipeline("moving", moving, "-")
+                .size(8, 8)
+                .animated(Animation { frames: 3, rate: 7 }),
+        ],
+    };
+
+    fn live() -> Live<'static> {
+        let scene = Scene::new(CHAPTER.lead(), &Given::default()).expect("no model");
+        Live::new(&CHAPTER, scene, Given::default())
+    }
+
+    fn play<'a>(mut live: Live<'a>, events: &[Event]) -> Live<'a> {
+        for event in events {
+            live.apply(*event).expect("no model");
+        }
+        live
+    }
+
+    /// The level of gray, and where the white dot is.
+    fn seen(picture: &Framebuffer) -> (u8, Option<Pixel>) {
+        let rect = picture.rect();
+        let mut pixels = rect.rows().flat_map(|y| rect.columns().map(move |x| (x, y)));
+        let dot = pixels.find(|&(x, y)| picture.get(x, y) == Some(Color::WHITE));
+        let level = picture.get(rect.right - 1, rect.top - 1).unwrap_or_default().channels()[0];
+        (level, dot)
+    }
+
+    #[test]
+    fn knobs_turn_and_come_back() {
+        let turned = play(live(), &[Event::Turn(5), Event::NextKnob(1), Event::Turn(3)]);
+        assert_eq!(seen(&turned.picture()), (120, Some((8, 6))));
+        assert_eq!(turned.status(), "wrong · dot = 7,6");
+        assert_eq!(seen(&play(turned, &[Event::Reset]).picture()), (100, Some((5, 6))));
+        let far = play(live(), &[Event::Turn(-1000)]);
+        assert_eq!(seen(&far.picture()).0, 0, "the end of the range");
+        assert_eq!(play(live(), &[Event::NextKnob(-1)]).knob().expect("a knob").0.name, "dot");
+    }
+
+    #[test]
+    fn a_point_is_dragged_and_stays_in_the_picture() {
+        let events = [Event::Press((5, 7)), Event::Drag((20, 10)), Event::Release, Event::Drag((1, 1))];
+        assert_eq!(seen(&play(live(), &events).picture()).1, Some((21, 10)));
+        let missed = [Event::Press((30, 20)), Event::Drag((20, 10))];
+        assert_eq!(seen(&play(live(), &missed).picture()).1, Some((5, 6)), "nothing was near");
+        // At twice the size a pixel is half a unit of the scene.
+        let mut large = live();
+        large.scene.size = (80, 60);
+        let dragged = play(large, &[Event::Press((8, 12)), Event::Drag((41, 20))]);
+        assert_eq!(dragged.scene.knobs.point("dot"), dvec2(20.5, 10.0));
+    }
+
+    #[test]
+    fn views_are_the_remedy_the_difference_and_the_overdraw() {
+        let shown = |view| play(live(), &[Event::Turn(5), Event::Show(view)]);
+        assert_eq!(seen(&shown(View::Remedy).picture()), (120, Some((4, 6))), "with the same knobs");
+        assert_eq!(shown(View::Remedy).status(), "right: remedy of wrong · level = 120");
+        let marked = shown(View::Difference).picture();
+        let magenta = Color::rgb(255, 0, 255);
+        assert_eq!((marked.get(4, 6), marked.get(5, 6)), (Some(magenta), Some(magenta)));
+        assert_ne!(marked.get(6, 6), Some(magenta));
+        assert_ne!(shown(View::Overdraw).picture(), live().picture());
+        let twice = play(shown(View::Remedy), &[Event::Show(View::Remedy)]);
+        assert_eq!(twice.view(), View::Itself);
+        let without = play(live(), &[Event::Variant(1), Event::Show(View::Remedy)]);
+        assert_eq!(without.view(), View::Itself, "it has no remedy");
+    }
+
+    #[test]
+    fn variants_take_over_knobs_and_an_asked_size() {
+        let other = play(live(), &[Event::Turn(5), Event::NextVariant(1)]);
+        assert_eq!(seen(&other.picture()), (120, Some((4, 6))));
+        assert_eq!(play(other, &[Event::NextVariant(-2)]).scene().variant.name, "moving");
+        assert_eq!(play(live(), &[Event::Variant(7)]).scene().variant.name, "wrong", "there is no eighth");
+        let mut large = live();
+        large.scene.size = (80, 60);
+        assert_eq!(play(large, &[Event::Variant(2)]).scene().size, (80, 60));
+    }
+
+    #[test]
+    fn what_runs_goes_round() {
+        let levels = |events: &[Event]| seen(&play(live(), events).picture()).0;
+        let mut events = vec![Event::Variant(2), Event::Run];
+        for expected in [10, 20, 0] {
+            events.push(Event::Tick);
+            assert_eq!(levels(&events), expected);
+        }
+        assert_eq!(play(live(), &events).rate(), Some(7));
+        events.extend([Event::Run, Event::Tick]);
+        assert_eq!(levels(&events), 0, "it stands");
+
+        let swept = |ticks: usize| levels(&[vec![Event::Run], vec![Event::Tick; ticks]].concat());
+        assert_eq!([swept(1), swept(31), swept(61), swept(91), swept(121)], [0, 120, 240, 120, 0]);
+        assert_eq!(play(live(), &[Event::NextKnob(1), Event::Run]).rate(), None, "a point has no range");
+    }
+
+    #[test]
+    fn single_pixels_are_shown_and_found() {
+        let near = play(live(), &[Event::Magnify(3, (5, 6))]);
+        let picture = near.picture();
+        assert_eq!((picture.width(), picture.height()), (40, 28), "4× as large, whole pixels only");
+        let (_, white) = seen(&picture);
+        assert_eq!(near.pixel_at(white.expect("in the part that is shown")), Some((5, 6)));
+        assert_eq!(near.pixel_at((40, 0)), None);
+        let again = play(near, &[Event::Magnify(-99, (0, 0))]);
+        assert_eq!(again.picture(), live().picture());
+        assert!(live().history((5, 6)).to_string().contains("pixel (5, 6)"));
+    }
+
+    #[test]
+    fn only_the_pipeline_has_another_rasterizer() {
+        let of = |events: &[Event]| play(live(), events).scene.rasterizer;
+        assert_eq!(of(&[Event::NextRasterizer]), of(&[]));
+        assert_ne!(of(&[Event::Variant(2), Event::NextRasterizer]), of(&[Event::Variant(2)]));
+    }
+}

@@ -1,0 +1,303 @@
+//! The live window: its keys and buttons become events of [`crate::live`], and it shows the picture that comes of them.
+
+use std::time::{Duration, Instant};
+
+use minifb::{Key, KeyRepeat, MouseButton, MouseMode, Window, WindowOptions};
+
+use super::failure::Failure;
+use super::output::{Destination, note, say};
+use crate::color::Color;
+use crate::framebuffer::Framebuffer;
+use crate::live::{Event, Live, View};
+use crate::rect::Pixel;
+
+/// What the keys and the mouse do.
+const HELP: &str = "\
+Tab, up, down   the next or the previous knob        Home   all as at first
+left, right     turn it                              Space  run or stop the animation, or the knob
+1 to 9 , .      another variant                      O      how often each pixel was written
+M               the remedy of a mistake              R      the next rasterizer
+D               where the two differ                 S      save what is seen
+wheel, + -      single pixels, and back              H ?    these lines
+drag            a point, or the model                Esc    close
+click           what happened at the pixel";
+
+/// What is around the picture.
+const BORDER: u32 = 0x20_20_20;
+/// A small picture is shown at least so large, if a whole number does it.
+const WIDTH: u32 = 640;
+/// The most pictures a second.
+const RATE: usize = 60;
+
+/// Opens the window, and returns when it is closed. What is saved goes to `destination`.
+pub(super) fn open(live: Live<'_>, destination: &Destination) -> Result<(), Failure> {
+    let (width, height) = live.scene().size;
+    let scale = (WIDTH / width).max(1);
+    let options = WindowOptions { resize: true, ..WindowOptions::default() };
+    let size = [width, height].map(|side| (side * scale) as usize);
+    let mut window = Window::new(live.scene().variant.name, size[0], size[1], options).map_err(no_window)?;
+    window.set_target_fps(RATE);
+    note(HELP);
+    let mut view = Viewer {
+        live,
+        destination,
+        shown: Shown::default(),
+        pointer: None,
+        pressed: None,
+        ticked: Instant::now(),
+    };
+    while window.is_open() && !window.is_key_down(Key::Escape) {
+        view.frame(&mut window)?;
+    }
+    let Shown { count, slowest, .. } = view.shown;
+    note(&format!("{count} pictures drawn, the slowest in {:.1} ms", slowest.as_secs_f64() * 1e3));
+    Ok(())
+}
+
+fn no_window(error: minifb::Error) -> Failure {
+    Failure::Runtime(format!(
+        "no window can be opened ({error}): is there a display? --show draws in the terminal"
+    ))
+}
+
+/// The picture on the window, and what drawing cost.
+#[derive(Default)]
+struct Shown {
+    picture: Option<Framebuffer>,
+    buffer: Vec<u32>,
+    size: (usize, usize),
+    title: String,
+    took: Duration,
+    count: u32,
+    slowest: Duration,
+}
+
+/// How the picture lies in the window: its scale, and where its upper left pixel is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Layout {
+    scale: i32,
+    left: i32,
+    top: i32,
+    height: i32,
+}
+
+impl Layout {
+    /// The largest whole-number scale at which the picture fits, in the middle.
+    fn new((width, height): (usize, usize), picture: &Framebuffer) -> Self {
+        let [width, height] = [width, height].map(|side| i32::try_from(side).unwrap_or(i32::MAX));
+        let [columns, rows] = [picture.width(), picture.height()].map(|side| side as i32);
+        let scale = (width / columns).min(height / rows).max(1);
+        let [left, top] = [width - columns * scale, height - rows * scale].map(|rest| rest.div_euclid(2));
+        Self { scale, left, top, height: rows }
+    }
+
+    /// The pixel of the picture at a place of the window, y up; it may lie outside.
+    const fn pixel(&self, (x, y): (i32, i32)) -> Pixel {
+        ((x - self.left).div_euclid(self.scale), self.height - 1 - (y - self.top).div_euclid(self.scale))
+    }
+}
+
+struct Viewer<'a> {
+    live: Live<'a>,
+    destination: &'a Destination,
+    shown: Shown,
+    /// The pixel of the shown picture under the pointer.
+    pointer: Option<Pixel>,
+    /// Where the button went down, if it has not moved since.
+    pressed: Option<Pixel>,
+    ticked: Instant,
+}
+
+impl Viewer<'_> {
+    /// One round: what came in, then what is seen.
+    fn frame(&mut self, window: &mut Window) -> Result<(), Failure> {
+        for key in window.get_keys_pressed(KeyRepeat::Yes) {
+            self.key(key)?;
+        }
+        self.mouse(window)?;
+        let due = self.live.rate().is_some_and(|rate| self.ticked.elapsed() >= Duration::from_secs(1) / rate);
+        if due {
+            self.ticked = Instant::now();
+            self.apply(Event::Tick)?;
+        }
+        self.draw(window)
+    }
+
+    fn apply(&mut self, event: Event) -> Result<(), Failure> {
+        let changed = self.live.apply(event).map_err(|error| Failure::Runtime(error.to_string()))?;
+        if changed {
+            self.shown.picture = None;
+        }
+        Ok(())
+    }
+
+    fn key(&mut self, key: Key) -> Result<(), Failure> {
+        let here = self.pointer.unwrap_or_else(|| {
+            let (width, height) = self.live.scene().size;
+            (width as i32 / 2, height as i32 / 2)
+        });
+        let event = match key {
+            Key::Tab | Key::Down => Event::NextKnob(1),
+            Key::Up => Event::NextKnob(-1),
+            Key::Left => Event::Turn(-1),
+            Key::Right => Event::Turn(1),
+            Key::Home => Event::Reset,
+            Key::Space => Event::Run,
+            Key::M => Event::Show(View::Remedy),
+            Key::D => Event::Show(View::Difference),
+            Key::O => Event::Show(View::Overdraw),
+            Key::R => Event::NextRasterizer,
+            Key::Comma => Event::NextVariant(-1),
+            Key::Period => Event::NextVariant(1),
+            Key::Equal | Key::NumPadPlus => Event::Magnify(1, here),
+            Key::Minus | Key::NumPadMinus => Event::Magnify(-1, here),
+            Key::S => return self.save(),
+            Key::H | Key::Slash => {
+                note(HELP);
+                return Ok(());
+            }
+            other => match digit(other) {
+                Some(digit) => Event::Variant(digit - 1),
+                None => return Ok(()),
+            },
+        };
+        self.apply(event)
+    }
+
+    fn mouse(&mut self, window: &Window) -> Result<(), Failure> {
+        let Some(picture) = &self.shown.picture else {
+            return Ok(());
+        };
+        let layout = Layout::new(self.shown.size, picture);
+        let place = window.get_mouse_pos(MouseMode::Pass).map(|(x, y)| (x.floor() as i32, y.floor() as i32));
+        let pixel = place.map(|place| layout.pixel(place));
+        let moved = pixel != self.pointer;
+        self.pointer = pixel;
+        let Some(pixel) = pixel else {
+            return Ok(());
+        };
+        if let Some((_, notches)) = window.get_scroll_wheel().filter(|(_, notches)| *notches != 0.0) {
+            self.apply(Event::Magnify(if notches > 0.0 { 1 } else { -1 }, pixel))?;
+        }
+        match (window.get_mouse_down(MouseButton::Left), self.live.is_held()) {
+            (true, false) => {
+                self.pressed = Some(pixel);
+                self.apply(Event::Press(pixel))
+            }
+            (true, true) if moved => {
+                self.pressed = None;
+                self.apply(Event::Drag(pixel))
+            }
+            (false, true) => {
+                self.apply(Event::Release)?;
+                // A click, not a drag.
+                self.pressed.take().map_or(Ok(()), |pixel| self.tell(pixel))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Prints the history of a pixel.
+    fn tell(&self, pixel: Pixel) -> Result<(), Failure> {
+        self.live.pixel_at(pixel).map_or(Ok(()), |pixel| say(&self.live.history(pixel).to_string()))
+    }
+
+    /// Writes what is seen into a file.
+    fn save(&self) -> Result<(), Failure> {
+        let settings = self.live.scene().knobs.changed().join("-").replace(['=', ','], "-").replace('#', "");
+        let view = match self.live.view() {
+            View::Itself => "",
+            View::Remedy => "-remedy",
+            View::Difference => "-difference",
+            View::Overdraw => "-overdraw",
+        };
+        let dash = if settings.is_empty() { "" } else { "-" };
+        let name = format!("{}{dash}{settings}{view}-seen", self.live.scene().variant.name);
+        self.destination.write(&name, &self.live.picture())
+    }
+
+    /// Draws if something has changed, and shows it.
+    fn draw(&mut self, window: &mut Window) -> Result<(), Failure> {
+        let size = window.get_size();
+        if self.shown.picture.is_none() {
+            let begun = Instant::now();
+            self.shown.picture = Some(self.live.picture());
+            self.shown.took = begun.elapsed();
+            self.shown.count += 1;
+            self.shown.slowest = self.shown.slowest.max(self.shown.took);
+            self.shown.size = (0, 0);
+        }
+        self.title(window);
+        let Shown { picture: Some(picture), buffer, size: before, .. } = &mut self.shown else {
+            return Ok(());
+        };
+        if *before == size {
+            window.update();
+            return Ok(());
+        }
+        *before = size;
+        lay_out(picture, size, buffer);
+        window.update_with_buffer(buffer, size.0, size.1).map_err(no_window)
+    }
+
+    fn title(&mut self, window: &mut Window) {
+        let under = self.pointer.and_then(|shown| {
+            let color = self.shown.picture.as_ref()?.get(shown.0, shown.1)?;
+            Some(format!(" · {}", Live::told(self.live.pixel_at(shown)?, color)))
+        });
+        let took = self.shown.took.as_secs_f64() * 1e3;
+        let title = format!("{} · {took:.1} ms{}", self.live.status(), under.unwrap_or_default());
+        if title != self.shown.title {
+            window.set_title(&title);
+            self.shown.title = title;
+        }
+    }
+}
+
+/// The picture in the middle of a window, each pixel as a square of whole pixels.
+fn lay_out(picture: &Framebuffer, (width, height): (usize, usize), buffer: &mut Vec<u32>) {
+    let layout = Layout::new((width, height), picture);
+    buffer.clear();
+    buffer.resize(width * height, BORDER);
+    let word =
+        |color: Color| color.channels().iter().fold(0, |word, channel| word << 8 | u32::from(*channel));
+    for (y, row) in (0..).zip(buffer.chunks_exact_mut(width)) {
+        for (x, place) in (0..).zip(row) {
+            let (column, line) = layout.pixel((x, y));
+            if let Some(color) = picture.get(column, line) {
+                *place = word(color);
+            }
+        }
+    }
+}
+
+fn digit(key: Key) -> Option<usize> {
+    const DIGITS: [Key; 9] =
+        [Key::Key1, Key::Key2, Key::Key3, Key::Key4, Key::Key5, Key::Key6, Key::Key7, Key::Key8, Key::Key9];
+    DIGITS.iter().position(|digit| *digit == key).map(|place| place + 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_lies_in_the_middle_at_a_whole_number_scale() {
+        let mut picture = Framebuffer::new(3, 2);
+        picture.set(0, 0, Color::RED);
+        let mut buffer = Vec::new();
+        lay_out(&picture, (11, 5), &mut buffer);
+        let red: Vec<usize> = (0..55).filter(|i| buffer[*i] == 0xff_00_00).collect();
+        // Scale 2, from column 2 on and row 0 on: the lower left pixel is at rows 2 and 3.
+        assert_eq!(red, [24, 25, 35, 36]);
+        assert_eq!(buffer.iter().filter(|word| **word == BORDER).count(), 55 - 24);
+        let layout = Layout::new((11, 5), &picture);
+        assert_eq!(
+            (layout.pixel((2, 3)), layout.pixel((7, 0)), layout.pixel((1, 0))),
+            ((0, 0), (2, 1), (-1, 1))
+        );
+        // Too large for the window: its middle.
+        lay_out(&picture, (1, 2), &mut buffer);
+        assert_eq!(buffer, [0, 0]);
+    }
+}
