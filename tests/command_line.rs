@@ -129,17 +129,29 @@ fn out_names_a_file_or_a_folder() {
 }
 
 #[test]
-fn sizes_cut_a_window_out_of_the_same_coordinates() {
+fn it_is_said_which_pictures_the_size_does_not_scale() {
     let folder = folder("size");
-    for (size, name) in [("640x480", "whole.png"), ("50x40", "part.png"), ("1x1", "dot.png")] {
-        assert!(run_in(&folder, &["correct", "--size", size, "--out", name]).status.success());
+    let run = |arguments: &[&str]| {
+        let program = env!("CARGO_BIN_EXE_ch01_pixels");
+        Command::new(program).args(arguments).current_dir(&folder).output().expect("the program starts")
+    };
+    for (variant, size, is_said) in [
+        ("pixel", "250x240", true),
+        ("pixel", "640x480", false),
+        ("digit", "250x240", false),
+        ("digit", "1x1", false),
+    ] {
+        let output = run(&[variant, "--size", size, "--out", "a.png"]);
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        let picture = image::open(folder.join("a.png")).expect("written").to_rgb8();
+        assert_eq!(format!("{}x{}", picture.width(), picture.height()), size);
+        let said = "'pixel' is drawn in pixels: the size only crops it or leaves a border black\n";
+        assert_eq!(text(&output.stderr), if is_said { said } else { "" }, "{variant} {size}");
     }
-    let [whole, part] =
-        ["whole.png", "part.png"].map(|name| image::open(folder.join(name)).expect("written").to_rgb8());
-    for (x, row, pixel) in part.enumerate_pixels() {
-        let y = 39 - row;
-        assert_eq!(pixel, whole.get_pixel(x, 479 - y), "({x}, {y})");
-    }
+    let (help, list) = (text(&run(&["--help"]).stdout), text(&run(&["--list"]).stdout));
+    assert!(help.contains("it only crops or borders what is drawn in pixels: pixel\n"), "{help}");
+    let marked: Vec<&str> = list.lines().filter(|line| line.contains("[in pixels")).collect();
+    assert!(marked.len() == 1 && marked[0].trim_start().starts_with("pixel "), "{list}");
 }
 
 #[test]
@@ -220,7 +232,7 @@ fn the_history_of_a_pixel() {
 #[test]
 fn steps_and_overdraw() {
     let folder = folder("steps");
-    let output = run_in(&folder, &["affine", "--steps", "--size", "100x100", "--out", "a.png"]);
+    let output = run_in(&folder, &["affine", "--steps", "--size", "320x240", "--out", "a.png"]);
     assert!(output.status.success(), "{}", text(&output.stderr));
     let png = std::io::BufReader::new(std::fs::File::open(folder.join("a.png")).expect("written"));
     let frames = png::Decoder::new(png).read_info().expect("a PNG file").info().animation_control;

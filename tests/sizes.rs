@@ -5,6 +5,7 @@
 mod chapters;
 
 use chapters::{CHAPTERS, variant};
+use rasterbook::figure::picture::paste;
 use rasterbook::figure::{DrawOptions, Variant};
 use rasterbook::inspect::{Steps, history};
 use rasterbook::{Color, Framebuffer, Pixel};
@@ -29,15 +30,17 @@ fn all(in_pixels: bool, what_is_wrong: impl Fn(&Variant) -> Option<String> + Syn
     assert!(!variants.is_empty() && wrong.is_empty(), "{wrong:#?}");
 }
 
-/// How many pixels of `this` that are not like its first one show something that `that` does not show near the same place,
-/// and of how many; `that` is `factor` times as large.
+/// Of a part of the pixels of `this`, those that are not like its first one: how many show something that `that` does not
+/// show near the same place, and how many there are. `that` is `factor` times as large.
 fn missing(this: &Framebuffer, that: &Framebuffer, factor: f64) -> (usize, usize) {
     // From a certain size on there is a grid between enlarged pixels.
     const GRID: Color = Color::gray(80);
     let background = this.get(0, 0);
     let reach = factor.ceil() as i32;
     let (mut missing, mut count) = (0, 0);
-    for (x, y) in this.rect().rows().flat_map(|y| this.rect().columns().map(move |x| (x, y))) {
+    let columns = this.rect().columns();
+    for (x, y) in this.rect().rows().step_by(3).flat_map(|y| columns.clone().step_by(3).map(move |x| (x, y)))
+    {
         let Some(color) = this.get(x, y).filter(|color| Some(*color) != background && *color != GRID) else {
             continue;
         };
@@ -54,14 +57,24 @@ fn is_like(a: Color, b: Color) -> bool {
     a.channels().into_iter().zip(b.channels()).all(|(a, b)| a.abs_diff(b) <= 24)
 }
 
+/// What is wrong if more than two of a hundred pixels are missing, or if hardly any were compared.
+fn too_many(missing: &[(usize, usize)]) -> Option<String> {
+    let is_wrong = |&(missing, count): &(usize, usize)| missing * 50 > count || count < 100;
+    missing.iter().any(is_wrong).then(|| format!("(missing, of): {missing:?}"))
+}
+
+/// Which copy of a texture they show depends on how many pixels a texel covers, and that is their point.
+const BY_LEVEL_OF_DETAIL: [&str; 2] = ["mip-levels", "address-modes"];
+
 #[test]
 fn twice_as_large_a_scene_shows_the_same() {
     all(false, |variant| {
+        if BY_LEVEL_OF_DETAIL.contains(&variant.name) {
+            return None;
+        }
         let (width, height) = variant.size;
         let (own, twice) = (draw(variant, variant.size), draw(variant, (2 * width, 2 * height)));
-        let wrong = [missing(&own, &twice, 2.0), missing(&twice, &own, 0.5)];
-        let is_wrong = wrong.iter().any(|&(missing, count)| missing * 50 > count || count < 100);
-        is_wrong.then(|| format!("(missing, of): {wrong:?}"))
+        too_many(&[missing(&own, &twice, 2.0), missing(&twice, &own, 0.5)])
     });
 }
 
@@ -72,12 +85,11 @@ fn in_other_proportions_a_scene_lies_undistorted_in_the_middle() {
         let own = draw(variant, variant.size);
         let wrong = [(60, 0), (0, 60)].map(|(wider, higher)| {
             let picture = draw(variant, (width + wider, height + higher));
-            let (left, bottom) = (wider as i32 / 2, higher as i32 / 2);
-            differing(&own, |x, y| picture.get(x + left, y + bottom))
+            let mut middle = Framebuffer::new(width, height);
+            paste(&mut middle, &picture, -(wider as i32 / 2), -(higher as i32 / 2));
+            [missing(&own, &middle, 1.0), missing(&middle, &own, 1.0)]
         });
-        // Other coordinates are rounded differently.
-        let most = (width * height / 2000) as usize;
-        wrong.iter().any(|&count| count > most).then(|| format!("{wrong:?} pixels differ"))
+        too_many(wrong.as_flattened())
     });
 }
 

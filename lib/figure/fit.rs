@@ -84,8 +84,10 @@ mod tests {
         for (width, height) in [(640, 480), (480, 480), (632, 208), (800, 400), (760, 400), (320, 320)] {
             let fit = Fit::new(Rect::sized(width, height), [width.into(), height.into()]);
             assert_eq!((fit.scale, fit.origin), (1.0, DVec2::ZERO));
-            let point = dvec2(415.692193816530 / 3.0, 0.1 + 0.2);
-            assert_eq!(fit.at(point).to_array().map(f64::to_bits), point.to_array().map(f64::to_bits));
+            for i in 0..100 {
+                let point = dvec2(415.692193816530, 0.1) * f64::from(i) / 7.0;
+                assert_eq!(fit.at(point).to_array().map(f64::to_bits), point.to_array().map(f64::to_bits));
+            }
             let rect = Rect { left: -4, bottom: 3, right: 7, top: 15 };
             assert_eq!(fit.rect(rect), rect);
         }

@@ -327,7 +327,7 @@ fn how_to_draw(chapter: &Chapter) -> [Arg; 6] {
     ]
 }
 
-/// What `--size` does, and to which variants of the chapter it does less.
+/// What `--size` does, and which variants of the chapter it does not scale.
 fn size_help(chapter: &Chapter) -> String {
     let help =
         "Size of the picture in pixels, such as 1920x1080; scenes scale to fit, their proportions kept";
@@ -335,7 +335,7 @@ fn size_help(chapter: &Chapter) -> String {
     match in_pixels.collect::<Vec<_>>().as_slice() {
         [] => help.to_owned(),
         names => {
-            format!("{help}, but drawn in pixels, and only cropped or given a border: {}", names.join(", "))
+            format!("{help}; it only crops or borders what is drawn in pixels: {}", names.join(", "))
         }
     }
 }
