@@ -323,6 +323,13 @@ fn help_reads_well() {
     ] {
         assert!(help.contains(word), "{word} is missing in:\n{help}");
     }
+    // No terminal: 100 columns. The second lines of the options and of the variants begin where their first ones do.
+    assert!(help.lines().all(|line| line.chars().count() <= 100), "{help}");
+    for second in
+        ["\n                           PNG on standard output", "\n                towards the horizon"]
+    {
+        assert!(help.contains(second), "{second:?} is missing in:\n{help}");
+    }
 }
 
 #[test]

@@ -113,7 +113,8 @@ fn command(chapter: &Chapter) -> Command {
         .about(chapter.question)
         .override_usage(format!("cargo run --bin {} -- [VARIANT] [OPTIONS]", chapter.name))
         .after_help(after)
-        .max_term_width(100)
+        // Whole lines: they are wrapped afterwards, with the lists below them.
+        .term_width(0)
         .version(env!("CARGO_PKG_VERSION"))
         .args(what_to_draw(chapter))
         .args(how_to_draw(chapter))

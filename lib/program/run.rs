@@ -4,6 +4,7 @@ use std::io::IsTerminal;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use clap::error::ErrorKind;
 use glam::DVec3;
 
 use super::animation::{encode, progress_bar};
@@ -11,6 +12,7 @@ use super::arguments::{Comparison, Format, Request, list};
 use super::failure::Failure;
 use super::output::{Destination, note, say};
 use super::programs::PROGRAMS;
+use super::wrap::{WIDEST, terminal_width, wrap_columns};
 use crate::figure::picture::{Zoom, difference, side_by_side, zoomed};
 use crate::figure::{Chapter, DrawOptions, Mistake, RasterizerChoice, Subject, Variant};
 use crate::files::{FileError, load_texture, shown};
@@ -32,13 +34,22 @@ impl Chapter {
 fn main(chapter: &Chapter) -> ExitCode {
     let request = match Request::parse(chapter, std::env::args_os()) {
         Ok(request) => request,
+        Err(error) if error.kind() == ErrorKind::DisplayHelp => {
+            let help = wrap_columns(&error.to_string(), terminal_width().unwrap_or(WIDEST));
+            return ended(say(help.trim_end()));
+        }
         Err(error) => {
-            // Help goes to standard output, errors to standard error; a closed pipe is not worth a word.
+            // The version goes to standard output, errors to standard error; a closed pipe is not worth a word.
             let _ = error.print();
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
         }
     };
-    match run(chapter, &request) {
+    ended(run(chapter, &request))
+}
+
+/// Says what went wrong, if anything did.
+fn ended(result: Result<(), Failure>) -> ExitCode {
+    match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             if failure != Failure::ClosedPipe {
@@ -51,7 +62,10 @@ fn main(chapter: &Chapter) -> ExitCode {
 
 fn run(chapter: &Chapter, request: &Request) -> Result<(), Failure> {
     if request.list {
-        return say(list(chapter).trim_end());
+        // A line each for grep, wrapped for people.
+        let list =
+            terminal_width().map_or_else(|| list(chapter), |width| wrap_columns(&list(chapter), width));
+        return say(list.trim_end());
     }
     let default = || PathBuf::from("out").join(chapter.name);
     let destination = Destination::new(request.out.clone().unwrap_or_else(default))?;
