@@ -274,6 +274,19 @@ fn what_makes_no_sense_is_refused() {
     refused("variant_elsewhere", &["tearing"], 2, "ch09_pipeline has it");
     refused("option", &["--sise", "4x4"], 2, "--sise");
     refused("two", &["affine", "correct"], 2, "correct");
+    refused(
+        "frame_negative",
+        &["--frame", "-1"],
+        2,
+        "'-1' for '--frame <N>': expected a whole number from 0 on",
+    );
+    refused("frame_word", &["--frame", "x"], 2, "'x' for '--frame <N>': expected a whole number from 0 on");
+    refused("frame_huge", &["--frame", "99999999999"], 2, "no animation has so many frames");
+    refused("frame_missing", &["--frame"], 2, "counted from 0");
+    refused("size_negative", &["--size", "-1x5"], 2, "'-1x5' for '--size <WxH>': expected WIDTHxHEIGHT");
+    refused("zoom_negative", &["--zoom", "-2"], 2, "must be a whole number from 1 to 64");
+    refused("inspect_half", &["--inspect", "1"], 2, "'1' for '--inspect <X,Y>': expected X,Y");
+    refused("out_forgotten", &["--out", "--all"], 2, "'--all' for '--out <PATH>': expected a path");
     refused("size", &["--size", "640"], 2, "640x480");
     refused("zero", &["--size", "0x5"], 2, "1 to 16384");
     refused("huge", &["--size", "16384x16384"], 2, "more than");
