@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
 use chapters::CHAPTERS;
+use rasterbook::figure::Variant;
 use rasterbook::program::PROGRAMS;
 
 /// An empty folder of its own for one test.
@@ -65,6 +66,40 @@ fn a_model_without_a_variant_is_drawn_by_the_first_that_can() {
     let output = run_in(&folder, &["--model", model]);
     assert_eq!(output.status.code(), Some(2));
     assert!(text(&output.stderr).contains("'floor' draws no model"), "{}", text(&output.stderr));
+}
+
+#[test]
+fn who_draws_models_is_told_to_those_who_ask_the_wrong_one() {
+    let folder = folder("no_model");
+    let (early, triangles, last) = (
+        env!("CARGO_BIN_EXE_ch05_perspective_correct"),
+        env!("CARGO_BIN_EXE_ch02_triangles"),
+        env!("CARGO_BIN_EXE_ch10_matrices_lighting"),
+    );
+    for (program, arguments, expected) in [
+        (
+            early,
+            &["affine", "--flat"][..],
+            "error: 'affine' draws no model: --model, --as-is and --flat mean nothing to it\n\
+             Models are drawn by other programs: ch02_dda_lines, ch02_triangles, ch10_matrices_lighting\n",
+        ),
+        (triangles, &["split", "--model", "x.obj", "--as-is"], "nothing to it\nModels are drawn by facets\n"),
+        (
+            triangles,
+            &["facets", "--texture", "x.png"],
+            "error: 'facets' draws no texture: --texture means nothing to it\n\
+             Textures are drawn by other programs: ch10_matrices_lighting\n",
+        ),
+        (last, &["spikes", "--compare", "rotation", "--flat"], "error: 'rotation' draws no model"),
+        (last, &["rotation", "--model", "x.obj"], "\nModels are drawn by lit, "),
+        (last, &["--all", "--flat"], "\nModels are drawn by lit, "),
+    ] {
+        let output = Command::new(program).args(arguments).current_dir(&folder).output().expect("it starts");
+        let stderr = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {stderr}");
+        assert!(stderr.contains(expected), "{arguments:?}: {stderr}");
+    }
+    assert!(files(&folder).is_empty(), "left {:?}", files(&folder));
 }
 
 #[test]
@@ -382,6 +417,13 @@ fn every_program_knows_the_others() {
     for (program, (chapter, _)) in PROGRAMS.iter().zip(CHAPTERS) {
         let names: Vec<_> = chapter.variants.iter().map(|variant| variant.name).collect();
         assert_eq!(program.variants, names, "{}", program.name);
+        assert_eq!(program.has_model, chapter.variants.iter().any(Variant::has_model), "{}", program.name);
+        assert_eq!(
+            program.has_texture,
+            chapter.variants.iter().any(Variant::has_texture),
+            "{}",
+            program.name
+        );
     }
 }
 

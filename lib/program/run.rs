@@ -11,7 +11,7 @@ use super::animation::{encode, progress_bar};
 use super::arguments::{Comparison, Format, Request, list};
 use super::failure::Failure;
 use super::output::{Destination, note, say};
-use super::programs::PROGRAMS;
+use super::programs::{PROGRAMS, Program};
 use super::wrap::{WIDEST, terminal_width, wrap_columns};
 use crate::figure::picture::{Zoom, difference, side_by_side, zoomed};
 use crate::figure::{Chapter, DrawOptions, Mistake, RasterizerChoice, Subject, Variant};
@@ -73,12 +73,14 @@ fn run(chapter: &Chapter, request: &Request) -> Result<(), Failure> {
         if destination.is_single() && chapter.variants.len() > 1 {
             return Err(Failure::Usage("--all draws several pictures: --out must name a folder".to_owned()));
         }
+        chapter.variants.iter().try_for_each(|variant| check_model_options(chapter, variant, request))?;
         return chapter.variants.iter().try_for_each(|variant| draw_one(variant, request, &destination));
     }
     let variant = match &request.variant {
         Some(name) => find(chapter, name)?,
         None => unnamed(chapter, request),
     };
+    check_model_options(chapter, variant, request)?;
     if let Some(pixel) = request.inspect {
         return inspect_pixel(chapter, variant, request, pixel);
     }
@@ -95,14 +97,16 @@ fn run(chapter: &Chapter, request: &Request) -> Result<(), Failure> {
             Ok(())
         }
         Some(comparison) => {
-            draw_comparison(variant, other(chapter, variant, comparison)?, request, &destination)
+            let other = other(chapter, variant, comparison)?;
+            check_model_options(chapter, other, request)?;
+            draw_comparison(variant, other, request, &destination)
         }
     }
 }
 
 /// The variant for those who have named none: the lead, or the first that can draw what was given instead of its own.
 fn unnamed<'a>(chapter: &'a Chapter, request: &Request) -> &'a Variant {
-    let accepts = |variant: &&Variant| check_model_options(variant, request).is_ok();
+    let accepts = |variant: &&Variant| check_model_options(chapter, variant, request).is_ok();
     chapter.variants.iter().find(accepts).unwrap_or_else(|| chapter.lead())
 }
 
@@ -208,19 +212,34 @@ fn rasterizer_of(variant: &Variant, request: &Request) -> Result<RasterizerChoic
 /// Where a model is brought to, and how far it reaches from there; the near plane of the book's view is at z = 2.
 const PLACE: (DVec3, f64) = (DVec3::new(0.0, 0.0, 4.0), 1.7);
 
-fn check_model_options(variant: &Variant, request: &Request) -> Result<(), Failure> {
+/// Whether what was given in place of a variant's own model and texture means anything to it.
+fn check_model_options(chapter: &Chapter, variant: &Variant, request: &Request) -> Result<(), Failure> {
+    let name = variant.name;
     if !variant.has_model() && (request.model.is_some() || request.as_is || request.flat) {
-        let reason =
-            format!("'{}' draws no model: --model, --as-is and --flat mean nothing to it", variant.name);
-        return Err(Failure::Usage(reason));
+        let others = those(chapter, Variant::has_model, |program| program.has_model);
+        return Err(Failure::Usage(format!(
+            "'{name}' draws no model: --model, --as-is and --flat mean nothing to it\nModels are drawn by {others}"
+        )));
     }
     if !variant.has_texture() && request.texture.is_some() {
+        let others = those(chapter, Variant::has_texture, |program| program.has_texture);
         return Err(Failure::Usage(format!(
-            "'{}' draws no texture: --texture means nothing to it",
-            variant.name
+            "'{name}' draws no texture: --texture means nothing to it\nTextures are drawn by {others}"
         )));
     }
     Ok(())
+}
+
+/// The variants of a chapter that do something; if none does, the programs that do.
+fn those(chapter: &Chapter, does: fn(&Variant) -> bool, has: fn(&Program) -> bool) -> String {
+    let variants: Vec<&str> =
+        chapter.variants.iter().filter(|variant| does(variant)).map(|variant| variant.name).collect();
+    if !variants.is_empty() {
+        return variants.join(", ");
+    }
+    let programs: Vec<&str> =
+        PROGRAMS.iter().filter(|program| has(program)).map(|program| program.name).collect();
+    format!("other programs: {}", programs.join(", "))
 }
 
 /// What was given in place of a variant's own model and texture.
@@ -230,11 +249,8 @@ struct Given {
 }
 
 impl Given {
-    /// Reads what was given, if it means something to all variants.
-    fn load(request: &Request, variants: &[&Variant]) -> Result<Self, Failure> {
-        for variant in variants {
-            check_model_options(variant, request)?;
-        }
+    /// Reads what was given.
+    fn load(request: &Request) -> Result<Self, Failure> {
         let mut warnings = Vec::new();
         let mut model = None;
         if let Some(path) = &request.model {
@@ -314,7 +330,7 @@ fn name_of(variant: &Variant, request: &Request) -> String {
 
 fn draw_one(variant: &Variant, request: &Request, destination: &Destination) -> Result<(), Failure> {
     let frame = frame_of(variant, request)?;
-    let job = Job::new(variant, request, &Given::load(request, &[variant])?)?;
+    let job = Job::new(variant, request, &Given::load(request)?)?;
     let picture = enlarged(job.draw(frame), request.zoom);
     destination.write(&name_of(variant, request), &picture)?;
     if let Some(zoom) = request.zoom {
@@ -338,7 +354,7 @@ fn animate(variant: &Variant, request: &Request, destination: &Destination) -> R
     let Some(animation) = variant.animation else {
         return Err(Failure::Usage(format!("'{}' is one picture: it cannot be animated", variant.name)));
     };
-    let job = Job::new(variant, request, &Given::load(request, &[variant])?)?;
+    let job = Job::new(variant, request, &Given::load(request)?)?;
     let draw = |frame| enlarged(job.draw(frame), request.zoom);
     destination.write_animation(&name_of(variant, request), |format| encode(format, animation, &draw))
 }
@@ -351,7 +367,7 @@ fn inspect_pixel(
     pixel: Pixel,
 ) -> Result<(), Failure> {
     let frame = frame_of(variant, request)?;
-    let job = Job::new(variant, request, &Given::load(request, &[variant])?)?;
+    let job = Job::new(variant, request, &Given::load(request)?)?;
     check_inside(job.size, pixel)?;
     let history = history(chapter.name, variant, &job.options(frame), pixel);
     if request.format == Format::Json {
@@ -364,7 +380,7 @@ fn inspect_pixel(
 /// Draws how a picture came about: step by step, or how often each pixel was written.
 fn draw_recorded(variant: &Variant, request: &Request, destination: &Destination) -> Result<(), Failure> {
     let frame = frame_of(variant, request)?;
-    let job = Job::new(variant, request, &Given::load(request, &[variant])?)?;
+    let job = Job::new(variant, request, &Given::load(request)?)?;
     let steps = Steps::new(variant, &job.options(frame));
     if request.steps {
         let draw = |number| enlarged(steps.frame(number), request.zoom);
@@ -384,7 +400,7 @@ fn draw_comparison(
     destination: &Destination,
 ) -> Result<(), Failure> {
     let frame = frame_of(this, request)?;
-    let given = Given::load(request, &[this, that])?;
+    let given = Given::load(request)?;
     let first = Job::new(this, request, &given)?.draw(frame);
     let second = Job::new(that, request, &given)?.draw(frame);
     let Some((marked, count)) = difference(&first, &second) else {
