@@ -190,7 +190,11 @@ fn zoom_and_compare() {
     let output =
         run_in(&folder, &["reciprocal", "--compare", "correct", "--zoom", "10@5,5", "--out", "b.png"]);
     assert_eq!(text(&output.stderr), "0 of 307200 pixels differ\n");
-    assert_eq!(image::image_dimensions(folder.join("b.png")).expect("written"), (1280 * 3 + 8, 960));
+    // Each panel has its own frame.
+    assert_eq!(
+        image::image_dimensions(folder.join("b.png")).expect("written"),
+        ((30 + 1280 + 4) * 3 + 8, 26 + 960 + 4)
+    );
 }
 
 #[test]
@@ -449,4 +453,12 @@ fn pixels_of_a_zoomed_picture_are_found_again() {
         text(&output.stderr).trim_end(),
         "shown: columns 20 to 99 and rows 90 to 149, y up, each pixel as 16×16"
     );
+    // The numbers in its frame say the same: the long tick of column 60 points at the pixel.
+    let zoomed = image::open(folder.join("out/ch05_perspective_correct/affine-zoom16-at-60-120.png"));
+    let zoomed = zoomed.expect("written").to_rgb8();
+    let (left, below) = (zoomed.width() - 4 - 80 * 16, zoomed.height() - 1 - 18);
+    let is_ink = |x: u32| zoomed.get_pixel(x, below).0 == [215; 3];
+    let ticks: Vec<u32> =
+        (left..zoomed.width()).filter(|&x| is_ink(x)).map(|x| 20 + (x - left) / 16).collect();
+    assert!(ticks.contains(&60) && ticks.iter().all(|column| column % 5 == 0), "{ticks:?}");
 }

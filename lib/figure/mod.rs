@@ -25,7 +25,9 @@
 pub mod assets;
 mod canvas;
 mod chapter;
+pub(crate) mod glyphs;
 pub mod picture;
+mod ruler;
 mod subject;
 
 pub use canvas::{Canvas, RasterizerChoice};

@@ -229,7 +229,7 @@ fn how_to_draw(chapter: &Chapter) -> [Arg; 6] {
         "A file (.png .bmp .tga .ppm; animations .gif .png), a folder, or - for a PNG on standard output [default: out/{}]",
         chapter.name
     );
-    let zoom = "Draw each pixel as N×N, around the pixel (X, Y), y up from the bottom; from 8 on with a grid";
+    let zoom = "Draw each pixel as N×N, around the pixel (X, Y), y up from the bottom, in a frame with the numbers of columns and rows; from 8 on with a grid";
     [
         option("out", "PATH", out).value_parser(OsStringValueParser::new().try_map(parse_path)),
         option("size", "WxH", "Size of the picture in pixels, such as 1920x1080").value_parser(parse_size),
