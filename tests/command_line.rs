@@ -268,7 +268,14 @@ fn steps_and_overdraw() {
     let output = run_in(&folder, &["affine", "--overdraw"]);
     let legend = text(&output.stderr);
     assert!(legend.starts_with("How often") && legend.contains("2: yellow (475 pixels)"), "{legend}");
-    assert!(folder.join("out/ch05_perspective_correct/affine-overdraw.png").is_file());
+    let size = |name: &str| {
+        image::image_dimensions(folder.join("out/ch05_perspective_correct").join(name)).expect("written")
+    };
+    assert_eq!(size("affine-overdraw.png"), (640, 480 + 22), "with a legend");
+    assert!(
+        run_in(&folder, &["affine", "--overdraw", "--zoom", "2@5,5", "--size", "80x60"]).status.success()
+    );
+    assert_eq!(size("affine-zoom2-at-5-5-overdraw.png").1, 120 + 30 + 38, "below what is enlarged");
 }
 
 #[test]

@@ -19,6 +19,10 @@ pub(super) const DIGITS: [[&str; 5]; 10] = [
 ];
 const PLUS: [&str; 5] = ["...", ".#.", "###", ".#.", "..."];
 
+/// What is written beside pictures has this color, and stands on that one.
+pub(crate) const INK: Color = Color::gray(215);
+/// The color of what surrounds a picture.
+pub(crate) const PAPER: Color = Color::gray(45);
 /// So many pixels is a dot of a [`label`] wide.
 const DOT: i32 = 2;
 /// How high a label is.

@@ -1,12 +1,9 @@
 //! A frame around an enlarged picture that numbers its columns and rows, so that a pixel that is seen can be named.
 
-use super::glyphs::{LABEL_HEIGHT, label, label_width};
-use crate::color::Color;
+use super::glyphs::{INK, LABEL_HEIGHT, PAPER, label, label_width};
 use crate::framebuffer::Framebuffer;
 use crate::rect::{Pixel, Rect};
 
-const PAPER: Color = Color::gray(45);
-const INK: Color = Color::gray(215);
 /// A tick with a number is so long, one without is half as long.
 const TICK: i32 = 8;
 const TICK_WIDTH: i32 = 2;

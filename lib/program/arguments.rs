@@ -198,7 +198,7 @@ fn what_to_tell() -> [Arg; 5] {
             .conflicts_with_all(["all", "animate", "compare", "inspect"]),
         switch(
             "overdraw",
-            "Draw how often each pixel is written; what the colors mean goes to standard error",
+            "Draw how often each pixel is written; what the colors mean stands below, and on standard error with counts",
         )
         .conflicts_with_all(["all", "animate", "compare", "inspect", "steps"]),
     ]

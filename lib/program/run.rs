@@ -17,7 +17,7 @@ use crate::figure::picture::{Zoom, difference, side_by_side, zoomed};
 use crate::figure::{Chapter, DrawOptions, Mistake, RasterizerChoice, Subject, Variant};
 use crate::files::{FileError, load_texture, shown};
 use crate::framebuffer::Framebuffer;
-use crate::inspect::{Steps, history};
+use crate::inspect::{Steps, history, with_legend};
 use crate::model::Model;
 use crate::rect::{Pixel, Rect};
 use crate::texture::Texture;
@@ -390,7 +390,7 @@ fn draw_recorded(variant: &Variant, request: &Request, destination: &Destination
     let (heat, legend) = steps.overdraw();
     note(&legend.join("\n"));
     let name = format!("{}-overdraw", name_of(variant, request));
-    destination.write(&name, &enlarged(heat, request.zoom))
+    destination.write(&name, &with_legend(enlarged(heat, request.zoom)))
 }
 
 fn draw_comparison(
