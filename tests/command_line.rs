@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
 use chapters::CHAPTERS;
+use rasterbook::figure::Variant;
 use rasterbook::program::PROGRAMS;
 
 /// An empty folder of its own for one test.
@@ -65,6 +66,40 @@ fn a_model_without_a_variant_is_drawn_by_the_first_that_can() {
     let output = run_in(&folder, &["--model", model]);
     assert_eq!(output.status.code(), Some(2));
     assert!(text(&output.stderr).contains("'floor' draws no model"), "{}", text(&output.stderr));
+}
+
+#[test]
+fn who_draws_models_is_told_to_those_who_ask_the_wrong_one() {
+    let folder = folder("no_model");
+    let (early, triangles, last) = (
+        env!("CARGO_BIN_EXE_ch05_perspective_correct"),
+        env!("CARGO_BIN_EXE_ch02_triangles"),
+        env!("CARGO_BIN_EXE_ch10_matrices_lighting"),
+    );
+    for (program, arguments, expected) in [
+        (
+            early,
+            &["affine", "--flat"][..],
+            "error: 'affine' draws no model: --model, --as-is and --flat mean nothing to it\n\
+             Models are drawn by other programs: ch02_dda_lines, ch02_triangles, ch10_matrices_lighting\n",
+        ),
+        (triangles, &["split", "--model", "x.obj", "--as-is"], "nothing to it\nModels are drawn by facets\n"),
+        (
+            triangles,
+            &["facets", "--texture", "x.png"],
+            "error: 'facets' draws no texture: --texture means nothing to it\n\
+             Textures are drawn by other programs: ch10_matrices_lighting\n",
+        ),
+        (last, &["spikes", "--compare", "rotation", "--flat"], "error: 'rotation' draws no model"),
+        (last, &["rotation", "--model", "x.obj"], "\nModels are drawn by lit, "),
+        (last, &["--all", "--flat"], "\nModels are drawn by lit, "),
+    ] {
+        let output = Command::new(program).args(arguments).current_dir(&folder).output().expect("it starts");
+        let stderr = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {stderr}");
+        assert!(stderr.contains(expected), "{arguments:?}: {stderr}");
+    }
+    assert!(files(&folder).is_empty(), "left {:?}", files(&folder));
 }
 
 #[test]
@@ -167,7 +202,11 @@ fn zoom_and_compare() {
     let output =
         run_in(&folder, &["reciprocal", "--compare", "correct", "--zoom", "10@5,5", "--out", "b.png"]);
     assert_eq!(text(&output.stderr), "0 of 307200 pixels differ\n");
-    assert_eq!(image::image_dimensions(folder.join("b.png")).expect("written"), (1280 * 3 + 8, 960));
+    // Each panel has its own frame.
+    assert_eq!(
+        image::image_dimensions(folder.join("b.png")).expect("written"),
+        ((30 + 1280 + 4) * 3 + 8, 26 + 960 + 4)
+    );
 }
 
 #[test]
@@ -241,7 +280,14 @@ fn steps_and_overdraw() {
     let output = run_in(&folder, &["affine", "--overdraw"]);
     let legend = text(&output.stderr);
     assert!(legend.starts_with("How often") && legend.contains("2: yellow (475 pixels)"), "{legend}");
-    assert!(folder.join("out/ch05_perspective_correct/affine-overdraw.png").is_file());
+    let size = |name: &str| {
+        image::image_dimensions(folder.join("out/ch05_perspective_correct").join(name)).expect("written")
+    };
+    assert_eq!(size("affine-overdraw.png"), (640, 480 + 22), "with a legend");
+    assert!(
+        run_in(&folder, &["affine", "--overdraw", "--zoom", "2@5,5", "--size", "80x60"]).status.success()
+    );
+    assert_eq!(size("affine-zoom2-at-5-5-overdraw.png").1, 120 + 30 + 38, "below what is enlarged");
 }
 
 #[test]
@@ -286,6 +332,19 @@ fn what_makes_no_sense_is_refused() {
     refused("variant_elsewhere", &["tearing"], 2, "ch09_pipeline has it");
     refused("option", &["--sise", "4x4"], 2, "--sise");
     refused("two", &["affine", "correct"], 2, "correct");
+    refused(
+        "frame_negative",
+        &["--frame", "-1"],
+        2,
+        "'-1' for '--frame <N>': expected a whole number from 0 on",
+    );
+    refused("frame_word", &["--frame", "x"], 2, "'x' for '--frame <N>': expected a whole number from 0 on");
+    refused("frame_huge", &["--frame", "99999999999"], 2, "no animation has so many frames");
+    refused("frame_missing", &["--frame"], 2, "counted from 0");
+    refused("size_negative", &["--size", "-1x5"], 2, "'-1x5' for '--size <WxH>': expected WIDTHxHEIGHT");
+    refused("zoom_negative", &["--zoom", "-2"], 2, "must be a whole number from 1 to 64");
+    refused("inspect_half", &["--inspect", "1"], 2, "'1' for '--inspect <X,Y>': expected X,Y");
+    refused("out_forgotten", &["--out", "--all"], 2, "'--all' for '--out <PATH>': expected a path");
     refused("size", &["--size", "640"], 2, "640x480");
     refused("zero", &["--size", "0x5"], 2, "1 to 16384");
     refused("huge", &["--size", "16384x16384"], 2, "more than");
@@ -335,6 +394,13 @@ fn help_reads_well() {
     ] {
         assert!(help.contains(word), "{word} is missing in:\n{help}");
     }
+    // No terminal: 100 columns. The second lines of the options and of the variants begin where their first ones do.
+    assert!(help.lines().all(|line| line.chars().count() <= 100), "{help}");
+    for second in
+        ["\n                           PNG on standard output", "\n                towards the horizon"]
+    {
+        assert!(help.contains(second), "{second:?} is missing in:\n{help}");
+    }
 }
 
 #[test]
@@ -374,6 +440,13 @@ fn every_program_knows_the_others() {
     for (program, (chapter, _)) in PROGRAMS.iter().zip(CHAPTERS) {
         let names: Vec<_> = chapter.variants.iter().map(|variant| variant.name).collect();
         assert_eq!(program.variants, names, "{}", program.name);
+        assert_eq!(program.has_model, chapter.variants.iter().any(Variant::has_model), "{}", program.name);
+        assert_eq!(
+            program.has_texture,
+            chapter.variants.iter().any(Variant::has_texture),
+            "{}",
+            program.name
+        );
     }
 }
 
@@ -399,4 +472,12 @@ fn pixels_of_a_zoomed_picture_are_found_again() {
         text(&output.stderr).trim_end(),
         "shown: columns 20 to 99 and rows 90 to 149, y up, each pixel as 16×16"
     );
+    // The numbers in its frame say the same: the long tick of column 60 points at the pixel.
+    let zoomed = image::open(folder.join("out/ch05_perspective_correct/affine-zoom16-at-60-120.png"));
+    let zoomed = zoomed.expect("written").to_rgb8();
+    let (left, below) = (zoomed.width() - 4 - 80 * 16, zoomed.height() - 1 - 18);
+    let is_ink = |x: u32| zoomed.get_pixel(x, below).0 == [215; 3];
+    let ticks: Vec<u32> =
+        (left..zoomed.width()).filter(|&x| is_ink(x)).map(|x| 20 + (x - left) / 16).collect();
+    assert!(ticks.contains(&60) && ticks.iter().all(|column| column % 5 == 0), "{ticks:?}");
 }

@@ -9,6 +9,7 @@ use std::fmt::Write as _;
 use glam::dvec3;
 use image::ImageFormat;
 
+use super::glyphs::{DIGITS, glyph};
 use super::picture::enlarged;
 use crate::color::Color;
 use crate::files::{FileError, decode_texture};
@@ -218,7 +219,7 @@ fn letters() -> Framebuffer {
     for (i, (_, rows)) in LETTERS.iter().enumerate() {
         let (left, bottom) = (16 * (i as i32 % 2), if i < 2 { 16 } else { 0 });
         small.fill(Rect { left, bottom, right: left + 16, top: bottom + 16 }, colors[i]);
-        glyph(&mut small, rows, left + 5, bottom + 4, Color::rgb(250, 245, 225));
+        glyph(&mut small, rows, (left + 5, bottom + 4), 1, Color::rgb(250, 245, 225));
     }
     let border = Color::rgb(235, 225, 200);
     for i in 0..32 {
@@ -235,28 +236,6 @@ fn blocks(small: &Framebuffer, factor: u32) -> Framebuffer {
     enlarged(&enlarged(small, factor / 2), 2)
 }
 
-/// Draws a letter or a digit, its lower left corner at (left, bottom).
-fn glyph(picture: &mut Framebuffer, rows: &[&str], left: i32, bottom: i32, color: Color) {
-    for (y, row) in (bottom..).zip(rows.iter().rev()) {
-        for (x, _) in (left..).zip(row.chars()).filter(|(_, dot)| *dot == '#') {
-            picture.set(x, y, color);
-        }
-    }
-}
-
-const DIGITS: [[&str; 5]; 10] = [
-    ["###", "#.#", "#.#", "#.#", "###"],
-    [".#.", "##.", ".#.", ".#.", "###"],
-    ["###", "..#", "###", "#..", "###"],
-    ["###", "..#", ".##", "..#", "###"],
-    ["#.#", "#.#", "###", "..#", "..#"],
-    ["###", "#..", "###", "..#", "###"],
-    ["###", "#..", "###", "#.#", "###"],
-    ["###", "..#", ".#.", ".#.", ".#."],
-    ["###", "#.#", "###", "#.#", "###"],
-    ["###", "#.#", "###", "..#", "###"],
-];
-
 /// 64 colored and checkered squares, numbered from 1 at the lower left.
 fn numbers() -> Framebuffer {
     let mut small = Framebuffer::new(128, 128);
@@ -272,7 +251,7 @@ fn numbers() -> Framebuffer {
         let number = i + 1;
         let digits = if number < 10 { vec![(6, number)] } else { vec![(4, number / 10), (9, number % 10)] };
         for (place, digit) in digits {
-            glyph(&mut small, &DIGITS[digit as usize], left + place, bottom + 5, Color::rgb(20, 20, 20));
+            glyph(&mut small, &DIGITS[digit as usize], (left + place, bottom + 5), 1, Color::rgb(20, 20, 20));
         }
     }
     blocks(&small, 4)

@@ -26,8 +26,10 @@ pub mod assets;
 mod canvas;
 mod chapter;
 mod fit;
+pub(crate) mod glyphs;
 mod knobs;
 pub mod picture;
+mod ruler;
 mod scene;
 mod subject;
 

@@ -1,5 +1,6 @@
 //! Pictures made of pictures: enlarged, side by side, and where two of them differ.
 
+use super::ruler::ruler;
 use crate::color::Color;
 use crate::framebuffer::Framebuffer;
 use crate::observer::Enlargement;
@@ -54,10 +55,18 @@ pub fn enlarged(picture: &Framebuffer, factor: u32) -> Framebuffer {
     blocks(picture, picture.rect(), factor)
 }
 
-/// The part of a picture around the zoom's center, each pixel as a block.
+/// The part of a picture around the zoom's center, each pixel as a block, in a frame that numbers its columns and rows.
 #[must_use]
 pub fn zoomed(picture: &Framebuffer, zoom: Zoom) -> Framebuffer {
-    blocks(picture, zoom.part(picture.rect()), zoom.factor)
+    let part = zoom.part(picture.rect());
+    let blocks = blocks(picture, part, zoom.factor);
+    if zoom.factor == 1 {
+        // Nothing is enlarged, and a frame may not fit into the largest picture.
+        return blocks;
+    }
+    let (mut framed, (left, bottom)) = ruler(part, zoom.factor);
+    paste(&mut framed, &blocks, left, bottom);
+    framed
 }
 
 /// The block that shows a pixel of an enlarged screen, the block of (0, 0) at `origin`; from a certain size on a line is
@@ -182,13 +191,13 @@ mod tests {
     }
 
     #[test]
-    fn zoom_makes_blocks_and_a_grid() {
-        let small = zoomed(&dots(3, 2, &[(1, 1)]), Zoom { factor: 2, center: None });
+    fn enlarging_makes_blocks_and_a_grid() {
+        let small = enlarged(&dots(3, 2, &[(1, 1)]), 2);
         assert_eq!((small.width(), small.height()), (6, 4));
         let red = |x, y| small.get(x, y) == Some(Color::RED);
         assert!(red(2, 2) && red(3, 3) && !red(1, 2) && !red(4, 3) && !red(2, 1));
 
-        let large = zoomed(&dots(3, 2, &[(1, 1)]), Zoom { factor: 8, center: None });
+        let large = enlarged(&dots(3, 2, &[(1, 1)]), 8);
         assert_eq!(large.get(8, 8), Some(Color::RED));
         assert_eq!(large.get(14, 14), Some(Color::RED));
         assert_eq!(large.get(15, 14), Some(GRID));
@@ -199,10 +208,15 @@ mod tests {
     fn zoom_cuts_around_its_center_and_stays_inside() {
         let picture = dots(640, 480, &[(0, 0), (639, 479)]);
         for (center, corner) in [((0, 0), (0, 0)), ((639, 479), (1279 - 31, 959 - 31))] {
-            let part = zoomed(&picture, Zoom { factor: 32, center: Some(center) });
-            assert_eq!((part.width(), part.height()), (1280, 960));
-            assert_eq!(part.get(corner.0, corner.1), Some(Color::RED));
+            let zoom = Zoom { factor: 32, center: Some(center) };
+            let (frame, (left, bottom)) = ruler(zoom.part(picture.rect()), 32);
+            let part = zoomed(&picture, zoom);
+            assert_eq!(part.rect(), frame.rect());
+            assert_eq!(part.get(left + corner.0, bottom + corner.1), Some(Color::RED));
+            assert_eq!(part.get(left - 1, bottom + corner.1), frame.get(left - 1, bottom + corner.1));
         }
+        let same = Zoom { factor: 1, center: Some((0, 0)) };
+        assert_eq!(zoomed(&picture, same).rect(), picture.rect(), "no frame: it might not fit");
     }
 
     #[test]

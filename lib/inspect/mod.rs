@@ -6,10 +6,12 @@
 mod explain;
 mod formulas;
 mod history;
+mod legend;
 mod record;
 mod rows;
 mod steps;
 
 pub use explain::{histories, history};
 pub use history::History;
+pub use legend::with_legend;
 pub use steps::Steps;

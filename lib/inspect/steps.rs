@@ -230,7 +230,7 @@ impl Steps {
 }
 
 /// Colors for 0, 1, 2, … writes.
-const HEAT: [(Color, &str); 7] = [
+pub(super) const HEAT: [(Color, &str); 7] = [
     (Color::BLACK, "black"),
     (Color::rgb(40, 70, 130), "blue"),
     (Color::rgb(255, 220, 60), "yellow"),

@@ -1,10 +1,12 @@
 //! The command line that all chapters share.
 
 use std::ffi::OsString;
+use std::num::{IntErrorKind, ParseIntError};
 use std::path::PathBuf;
 
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use clap::builder::{OsStringValueParser, PossibleValue, PossibleValuesParser, StyledStr, TypedValueParser};
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{Arg, ArgAction, ArgMatches, Command};
 
 use super::programs::PROGRAMS;
 use crate::figure::picture::Zoom;
@@ -72,7 +74,9 @@ impl Request {
         chapter: &Chapter,
         arguments: impl IntoIterator<Item = OsString>,
     ) -> Result<Self, clap::Error> {
-        let matches = command(chapter).try_get_matches_from(arguments)?;
+        let mut command = command(chapter);
+        let matches =
+            command.try_get_matches_from_mut(arguments).map_err(|error| explained(error, &command))?;
         let text = |id: &str| matches.get_one::<String>(id).cloned();
         Ok(Self {
             list: matches.get_flag("list"),
@@ -105,6 +109,23 @@ impl Request {
     pub(super) const fn normal_style(&self) -> NormalStyle {
         if self.flat { NormalStyle::Flat } else { NormalStyle::Smooth }
     }
+}
+
+/// The error of clap without its tip to put what begins with a hyphen after `--`: no variant begins so. Where a value is
+/// missing, the tip is what the value would be.
+fn explained(mut error: clap::Error, command: &Command) -> clap::Error {
+    error.remove(ContextKind::Suggested);
+    let is_missing = error.kind() == ErrorKind::InvalidValue
+        && matches!(error.get(ContextKind::InvalidValue), Some(ContextValue::String(value)) if value.is_empty());
+    let named = |argument: &&Arg| {
+        error.get(ContextKind::InvalidArg) == Some(&ContextValue::String(argument.to_string()))
+    };
+    if let Some(argument) = command.get_arguments().find(named).filter(|_| is_missing) {
+        let help = argument.get_help().cloned().unwrap_or_default();
+        let tip = StyledStr::from(format!("{argument}: {help}"));
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip]));
+    }
+    error
 }
 
 fn comparison(matches: &ArgMatches) -> Option<Comparison> {
@@ -140,7 +161,8 @@ fn command(chapter: &Chapter) -> Command {
         .about(chapter.question)
         .override_usage(format!("cargo run --bin {} -- [VARIANT] [OPTIONS]", chapter.name))
         .after_help(after)
-        .max_term_width(100)
+        // Whole lines: they are wrapped afterwards, with the lists below them.
+        .term_width(0)
         .version(env!("CARGO_PKG_VERSION"))
         .args(what_to_draw(chapter))
         .arg(window())
@@ -155,8 +177,9 @@ fn switch(id: &'static str, help: &'static str) -> Arg {
     Arg::new(id).long(id).action(ArgAction::SetTrue).help(help)
 }
 
+/// An option with a value. The word after it is its value, whatever that begins with: so an error names both.
 fn option(id: &'static str, value: &'static str, help: impl Into<String>) -> Arg {
-    Arg::new(id).long(id).value_name(value).help(help.into())
+    Arg::new(id).long(id).value_name(value).help(help.into()).allow_hyphen_values(true)
 }
 
 fn what_to_draw(chapter: &Chapter) -> [Arg; 3] {
@@ -211,7 +234,7 @@ fn has_knob(chapter: &Chapter, name: &str) -> bool {
 
 /// What is drawn in place of a variant's own model, and how it is looked at.
 fn subject(chapter: &Chapter) -> [Arg; 7] {
-    let path = value_parser!(PathBuf);
+    let path = OsStringValueParser::new().try_map(parse_path);
     // Where no variant draws a model, help does not speak of them.
     let is_hidden = !chapter.variants.iter().any(Variant::has_model);
     let given = [
@@ -232,7 +255,6 @@ fn subject(chapter: &Chapter) -> [Arg; 7] {
             "Look at the model from there, in degrees: to the right, then up; 0,0 is from the front",
         )
         .value_parser(parse_angles)
-        .allow_hyphen_values(true)
         .conflicts_with("all"),
         option("light", "AZIMUTH,ELEVATION", "Light the model from there, in the same way")
             .value_parser(parse_angles)
@@ -252,7 +274,6 @@ fn what_to_tell() -> [Arg; 5] {
     [
         option("inspect", "X,Y", inspect)
             .value_parser(parse_pixel)
-            .allow_hyphen_values(true)
             .conflicts_with_all(["all", "animate", "compare", "zoom", "out"]),
         option("format", "FORM", "The form of the report: text, or json for programs [default: text]")
             .value_parser(["text", "json"])
@@ -264,7 +285,7 @@ fn what_to_tell() -> [Arg; 5] {
             .conflicts_with_all(["all", "animate", "compare", "inspect"]),
         switch(
             "overdraw",
-            "Draw how often each pixel is written; what the colors mean goes to standard error",
+            "Draw how often each pixel is written; what the colors mean stands below, and on standard error with counts",
         )
         .conflicts_with_all(["all", "animate", "compare", "inspect", "steps"]),
     ]
@@ -304,12 +325,12 @@ fn how_to_draw(chapter: &Chapter) -> [Arg; 6] {
         "A file (.png .bmp .tga .ppm; animations .gif .png), a folder, or - for a PNG on standard output [default: out/{}]",
         chapter.name
     );
-    let zoom = "Draw each pixel as N×N, around the pixel (X, Y), y up from the bottom; from 8 on with a grid";
+    let zoom = "Draw each pixel as N×N, around the pixel (X, Y), y up from the bottom, in a frame with the numbers of columns and rows; from 8 on with a grid";
     [
-        option("out", "PATH", out).value_parser(value_parser!(PathBuf)),
+        option("out", "PATH", out).value_parser(OsStringValueParser::new().try_map(parse_path)),
         option("size", "WxH", size_help(chapter)).value_parser(parse_size),
-        option("frame", "N", "Draw one frame of an animation [default: 0]")
-            .value_parser(value_parser!(u32))
+        option("frame", "N", "Draw one frame of an animation, counted from 0 [default: 0]")
+            .value_parser(parse_frame)
             .conflicts_with("all"),
         switch(
             "animate",
@@ -322,6 +343,9 @@ fn how_to_draw(chapter: &Chapter) -> [Arg; 6] {
             "OTHER",
             "Draw this | OTHER | where they differ; OTHER is a mistake's remedy if none is named",
         )
+        // Its value may be missing: what follows then is another option.
+        .allow_hyphen_values(false)
+        .allow_negative_numbers(true)
         .num_args(0..=1)
         .conflicts_with("all"),
     ]
@@ -360,7 +384,10 @@ fn parse_size(text: &str) -> Result<(u32, u32), String> {
     let sides = text.split_once(['x', 'X', '×']).and_then(|(width, height)| {
         Some((width.trim().parse::<u32>().ok()?, height.trim().parse::<u32>().ok()?))
     });
-    let (width, height) = sides.ok_or("expected WIDTHxHEIGHT, such as 640x480")?;
+    let expected = || {
+        format!("expected WIDTHxHEIGHT, whole numbers from 1 to {}, such as 640x480", Framebuffer::MAX_SIDE)
+    };
+    let (width, height) = sides.ok_or_else(expected)?;
     let allowed = 1..=Framebuffer::MAX_SIDE;
     if !allowed.contains(&width) || !allowed.contains(&height) {
         return Err(format!("each side must be 1 to {} pixels", Framebuffer::MAX_SIDE));
@@ -371,11 +398,29 @@ fn parse_size(text: &str) -> Result<(u32, u32), String> {
     Ok((width, height))
 }
 
+fn parse_frame(text: &str) -> Result<u32, String> {
+    text.trim().parse().map_err(|error: ParseIntError| {
+        let reason = match error.kind() {
+            IntErrorKind::PosOverflow => "no animation has so many frames",
+            _ => "expected a whole number from 0 on",
+        };
+        reason.to_owned()
+    })
+}
+
+fn parse_path(text: OsString) -> Result<PathBuf, &'static str> {
+    // Rather an option whose value was forgotten in front of it than a file.
+    if text != "-" && text.as_encoded_bytes().starts_with(b"-") {
+        return Err("expected a path; in front of one that begins with a hyphen put ./");
+    }
+    if text.is_empty() { Err("expected a path") } else { Ok(PathBuf::from(text)) }
+}
+
 fn parse_pixel(text: &str) -> Result<Pixel, String> {
     let coordinates = text
         .split_once(',')
         .and_then(|(x, y)| Some((x.trim().parse::<i32>().ok()?, y.trim().parse::<i32>().ok()?)));
-    coordinates.ok_or_else(|| "expected X,Y, such as 320,240".to_owned())
+    coordinates.ok_or_else(|| "expected X,Y, a column and a row of the picture, such as 320,240".to_owned())
 }
 
 /// Two angles in degrees.
@@ -411,6 +456,46 @@ mod tests {
             ["", "640", "640x", "x480", "0x480", "-1x5", "640x480x3", "16385x1", "16384x16384", "1e3x5"]
         {
             assert!(parse_size(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn every_option_tells_what_its_value_may_be() {
+        const VARIANTS: &[Variant] = &[Variant::new("one", |_| {}, "?")];
+        let command = command(&Chapter { name: "ch00", question: "?", variants: VARIANTS });
+        let error = |words: &[&str]| {
+            let words = ["ch00"].iter().chain(words);
+            let mut command = command.clone();
+            let error = command.try_get_matches_from_mut(words).expect_err("refused");
+            explained(error, &command).to_string()
+        };
+        // The value of --compare may be missing.
+        let is_sure = |argument: &&Arg| {
+            argument.get_action().takes_values()
+                && argument.get_num_args().is_none_or(|count| count.min_values() > 0)
+        };
+        let mut count = 0;
+        for name in command.get_arguments().filter(is_sure).filter_map(Arg::get_long) {
+            let option = format!("--{name}");
+            let missing = error(&[&option]);
+            assert!(missing.contains("a value is required") && missing.contains("tip: --"), "{missing}");
+            let negative = error(&[&option, "-2"]);
+            assert!(negative.contains("invalid value '-2' for '--") && negative.contains(name), "{negative}");
+            assert!(!negative.contains("tip:"), "{negative}");
+            count += 1;
+        }
+        assert!(count > 8, "{count} options");
+        let unknown = error(&["--sise"]);
+        assert!(unknown.contains("'--size'") && !unknown.contains("-- --sise"), "{unknown}");
+    }
+
+    #[test]
+    fn paths() {
+        for good in ["-", "./-x", "a b", "out/"] {
+            assert_eq!(parse_path(good.into()), Ok(good.into()));
+        }
+        for bad in ["", "-x", "--all"] {
+            assert!(parse_path(bad.into()).is_err(), "{bad}");
         }
     }
 

@@ -12,6 +12,7 @@ mod programs;
 mod run;
 #[cfg(feature = "window")]
 mod window;
+mod wrap;
 
 pub use failure::Failure;
 pub use programs::{PROGRAMS, Program};

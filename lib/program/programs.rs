@@ -10,6 +10,10 @@ pub struct Program {
     pub question: &'static str,
     /// The names of its variants, in their order.
     pub variants: &'static [&'static str],
+    /// Whether one of them draws a model, so that `--model` means something to it.
+    pub has_model: bool,
+    /// Whether one of them draws a model with a texture, so that `--texture` does.
+    pub has_texture: bool,
 }
 
 /// All programs, in the order of the book.
@@ -18,11 +22,15 @@ pub const PROGRAMS: [Program; 11] = [
         name: "ch01_pixels",
         question: "How does a program put a picture on a screen?",
         variants: &["pawn", "pixel", "digit", "subpixels"],
+        has_model: false,
+        has_texture: false,
     },
     Program {
         name: "ch02_dda_lines",
         question: "Which pixels belong to a line between two points?",
         variants: &["star", "line", "broken", "wireframe"],
+        has_model: true,
+        has_texture: false,
     },
     Program {
         name: "ch02_triangles",
@@ -41,16 +49,22 @@ pub const PROGRAMS: [Program; 11] = [
             "multisampled",
             "facets",
         ],
+        has_model: true,
+        has_texture: false,
     },
     Program {
         name: "ch03_barycentric",
         question: "The corners have values: which value has a pixel between them?",
         variants: &["weights", "rgb", "gray", "texture", "spikes", "limited-edges", "limited"],
+        has_model: false,
+        has_texture: false,
     },
     Program {
         name: "ch04_projection",
         question: "Why is small what is far away?",
         variants: &["cube", "orthographic", "rails", "near"],
+        has_model: false,
+        has_texture: false,
     },
     Program {
         name: "ch05_perspective_correct",
@@ -65,6 +79,8 @@ pub const PROGRAMS: [Program; 11] = [
             "barycentric",
             "floor-affine",
         ],
+        has_model: false,
+        has_texture: false,
     },
     Program {
         name: "ch06_z_buffer",
@@ -80,16 +96,22 @@ pub const PROGRAMS: [Program; 11] = [
             "uncleared",
             "cleared",
         ],
+        has_model: false,
+        has_texture: false,
     },
     Program {
         name: "ch07_clipping",
         question: "What if a triangle reaches behind the eye?",
         variants: &["in-front", "near", "reciprocal", "behind", "polygon"],
+        has_model: false,
+        has_texture: false,
     },
     Program {
         name: "ch08_cvv",
         question: "What of the world gets into the picture?",
         variants: &["clipped", "ndc", "planes", "frustum", "divide-first", "clip-first", "zero-to-one"],
+        has_model: false,
+        has_texture: false,
     },
     Program {
         name: "ch09_pipeline",
@@ -107,6 +129,8 @@ pub const PROGRAMS: [Program; 11] = [
             "presented",
             "indexed",
         ],
+        has_model: false,
+        has_texture: false,
     },
     Program {
         name: "ch10_matrices_lighting",
@@ -138,5 +162,7 @@ pub const PROGRAMS: [Program; 11] = [
             "gamma-space",
             "linear-space",
         ],
+        has_model: true,
+        has_texture: true,
     },
 ];

@@ -4,13 +4,15 @@ use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use clap::error::ErrorKind;
 use glam::DVec3;
 
 use super::animation::{encode, progress_bar};
 use super::arguments::{Comparison, Format, Request, knob_list, list};
 use super::failure::Failure;
 use super::output::{Destination, note, say};
-use super::programs::PROGRAMS;
+use super::programs::{PROGRAMS, Program};
+use super::wrap::{WIDEST, terminal_width, wrap_columns};
 use crate::figure::picture::{Zoom, difference, side_by_side, zoomed};
 use crate::figure::{
     Animation, Chapter, DrawOptions, Given, Knob, KnobError, Knobs, Mistake, RasterizerChoice, Scene,
@@ -18,7 +20,7 @@ use crate::figure::{
 };
 use crate::files::{FileError, load_texture, shown};
 use crate::framebuffer::Framebuffer;
-use crate::inspect::{Steps, history};
+use crate::inspect::{Steps, history, with_legend};
 #[cfg(feature = "window")]
 use crate::live::{Event, Live};
 use crate::model::Model;
@@ -36,13 +38,22 @@ impl Chapter {
 fn main(chapter: &Chapter) -> ExitCode {
     let request = match Request::parse(chapter, std::env::args_os()) {
         Ok(request) => request,
+        Err(error) if error.kind() == ErrorKind::DisplayHelp => {
+            let help = wrap_columns(&error.to_string(), terminal_width().unwrap_or(WIDEST));
+            return ended(say(help.trim_end()));
+        }
         Err(error) => {
-            // Help goes to standard output, errors to standard error; a closed pipe is not worth a word.
+            // The version goes to standard output, errors to standard error; a closed pipe is not worth a word.
             let _ = error.print();
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
         }
     };
-    match run(chapter, &request) {
+    ended(run(chapter, &request))
+}
+
+/// Says what went wrong, if anything did.
+fn ended(result: Result<(), Failure>) -> ExitCode {
+    match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             if failure != Failure::ClosedPipe {
@@ -55,7 +66,10 @@ fn main(chapter: &Chapter) -> ExitCode {
 
 fn run(chapter: &Chapter, request: &Request) -> Result<(), Failure> {
     if request.list {
-        return say(list(chapter).trim_end());
+        // A line each for grep, wrapped for people.
+        let list =
+            terminal_width().map_or_else(|| list(chapter), |width| wrap_columns(&list(chapter), width));
+        return say(list.trim_end());
     }
     let default = || PathBuf::from("out").join(chapter.name);
     let destination = Destination::new(request.out.clone().unwrap_or_else(default))?;
@@ -63,12 +77,14 @@ fn run(chapter: &Chapter, request: &Request) -> Result<(), Failure> {
         if destination.is_single() && chapter.variants.len() > 1 {
             return Err(Failure::Usage("--all draws several pictures: --out must name a folder".to_owned()));
         }
+        chapter.variants.iter().try_for_each(|variant| check_model_options(chapter, variant, request))?;
         return chapter.variants.iter().try_for_each(|variant| draw_one(variant, request, &destination));
     }
     let variant = match &request.variant {
         Some(name) => find(chapter, name)?,
         None => unnamed(chapter, request),
     };
+    check_model_options(chapter, variant, request)?;
     if request.knobs {
         return say(&knob_list(variant));
     }
@@ -92,7 +108,9 @@ fn run(chapter: &Chapter, request: &Request) -> Result<(), Failure> {
             Ok(())
         }
         Some(comparison) => {
-            draw_comparison(variant, other(chapter, variant, comparison)?, request, &destination)
+            let other = other(chapter, variant, comparison)?;
+            check_model_options(chapter, other, request)?;
+            draw_comparison(variant, other, request, &destination)
         }
     }
 }
@@ -104,7 +122,7 @@ fn open_window(
     request: &Request,
     destination: &Destination,
 ) -> Result<(), Failure> {
-    let given = load(request, &[variant])?;
+    let given = load(request)?;
     let mut live = Live::new(chapter, scene_of(variant, request, &given)?, given);
     if let Some(name) = &request.sweep {
         sweepable(variant, name)?;
@@ -129,7 +147,8 @@ fn unnamed<'a>(chapter: &'a Chapter, request: &Request) -> &'a Variant {
         let names = request.settings.iter().filter_map(|setting| setting.split_once('='));
         names.map(|(name, _)| name).chain(request.sweep.as_deref()).all(|name| knobs.find(name).is_some())
     };
-    let accepts = |variant: &&Variant| check_model_options(variant, request).is_ok() && has_knobs(variant);
+    let accepts =
+        |variant: &&Variant| check_model_options(chapter, variant, request).is_ok() && has_knobs(variant);
     chapter.variants.iter().find(accepts).unwrap_or_else(|| chapter.lead())
 }
 
@@ -229,26 +248,38 @@ fn rasterizer_of(variant: &Variant, request: &Request) -> Result<RasterizerChoic
 /// Where a model is brought to, and how far it reaches from there; the near plane of the book's view is at z = 2.
 const PLACE: (DVec3, f64) = (DVec3::new(0.0, 0.0, 4.0), 1.7);
 
-fn check_model_options(variant: &Variant, request: &Request) -> Result<(), Failure> {
+/// Whether what was given in place of a variant's own model and texture means anything to it.
+fn check_model_options(chapter: &Chapter, variant: &Variant, request: &Request) -> Result<(), Failure> {
+    let name = variant.name;
     if !variant.has_model() && (request.model.is_some() || request.as_is || request.flat) {
-        let reason =
-            format!("'{}' draws no model: --model, --as-is and --flat mean nothing to it", variant.name);
-        return Err(Failure::Usage(reason));
+        let others = those(chapter, Variant::has_model, |program| program.has_model);
+        return Err(Failure::Usage(format!(
+            "'{name}' draws no model: --model, --as-is and --flat mean nothing to it\nModels are drawn by {others}"
+        )));
     }
     if !variant.has_texture() && request.texture.is_some() {
+        let others = those(chapter, Variant::has_texture, |program| program.has_texture);
         return Err(Failure::Usage(format!(
-            "'{}' draws no texture: --texture means nothing to it",
-            variant.name
+            "'{name}' draws no texture: --texture means nothing to it\nTextures are drawn by {others}"
         )));
     }
     Ok(())
 }
 
-/// Reads what was given in place of a variant's own model and texture, if it means something to all variants.
-fn load(request: &Request, variants: &[&Variant]) -> Result<Given, Failure> {
-    for variant in variants {
-        check_model_options(variant, request)?;
+/// The variants of a chapter that do something; if none does, the programs that do.
+fn those(chapter: &Chapter, does: fn(&Variant) -> bool, has: fn(&Program) -> bool) -> String {
+    let variants: Vec<&str> =
+        chapter.variants.iter().filter(|variant| does(variant)).map(|variant| variant.name).collect();
+    if !variants.is_empty() {
+        return variants.join(", ");
     }
+    let programs: Vec<&str> =
+        PROGRAMS.iter().filter(|program| has(program)).map(|program| program.name).collect();
+    format!("other programs: {}", programs.join(", "))
+}
+
+/// Reads what was given in place of a variant's own model and texture.
+fn load(request: &Request) -> Result<Given, Failure> {
     let mut warnings = Vec::new();
     let mut model = None;
     if let Some(path) = &request.model {
@@ -333,7 +364,7 @@ fn file_name(setting: &str) -> String {
 }
 
 fn draw_one(variant: &Variant, request: &Request, destination: &Destination) -> Result<(), Failure> {
-    let scene = scene_of(variant, request, &load(request, &[variant])?)?;
+    let scene = scene_of(variant, request, &load(request)?)?;
     let picture = scene.draw();
     let unseen = request.model.as_ref().and_then(|path| unseen(path, &scene, &picture));
     destination.write(&name_of(variant, request), &enlarged(picture, request.zoom))?;
@@ -385,7 +416,7 @@ fn animate(variant: &Variant, request: &Request, destination: &Destination) -> R
     let Some(animation) = variant.animation else {
         return Err(Failure::Usage(format!("'{}' is one picture: it cannot be animated", variant.name)));
     };
-    let scene = scene_of(variant, request, &load(request, &[variant])?)?;
+    let scene = scene_of(variant, request, &load(request)?)?;
     let draw = |frame| enlarged(variant.draw(&DrawOptions { frame, ..scene.options(None) }), request.zoom);
     destination.write_animation(&name_of(variant, request), |format| encode(format, animation, &draw))
 }
@@ -420,11 +451,12 @@ fn sweep(
     };
     let swept = format!("{}-sweep-{name}", name_of(variant, request));
     let Some(comparison) = &request.compare else {
-        let scene = scene_of(variant, request, &load(request, &[variant])?)?;
+        let scene = scene_of(variant, request, &load(request)?)?;
         let draw = |number| enlarged(turned(&scene, number), request.zoom);
         return destination.write_animation(&swept, |format| encode(format, SWEEP, &draw));
     };
     let that = other(chapter, variant, comparison)?;
+    check_model_options(chapter, that, request)?;
     let (first, second) = pair_of(variant, that, request)?;
     // Whether the three fit is seen at the first frame.
     let panels = |number| compared(turned(&first, number), turned(&second, number), request.zoom);
@@ -441,7 +473,7 @@ fn inspect_pixel(
     request: &Request,
     pixel: Pixel,
 ) -> Result<(), Failure> {
-    let scene = scene_of(variant, request, &load(request, &[variant])?)?;
+    let scene = scene_of(variant, request, &load(request)?)?;
     check_inside(scene.size, pixel)?;
     let history = history(chapter.name, variant, &scene.options(None), pixel);
     if request.format == Format::Json {
@@ -453,7 +485,7 @@ fn inspect_pixel(
 
 /// Draws how a picture came about: step by step, or how often each pixel was written.
 fn draw_recorded(variant: &Variant, request: &Request, destination: &Destination) -> Result<(), Failure> {
-    let scene = scene_of(variant, request, &load(request, &[variant])?)?;
+    let scene = scene_of(variant, request, &load(request)?)?;
     let steps = Steps::new(variant, &scene.options(None));
     if request.steps {
         let draw = |number| enlarged(steps.frame(number), request.zoom);
@@ -463,7 +495,7 @@ fn draw_recorded(variant: &Variant, request: &Request, destination: &Destination
     let (heat, legend) = steps.overdraw();
     note(&legend.join("\n"));
     let name = format!("{}-overdraw", name_of(variant, request));
-    destination.write(&name, &enlarged(heat, request.zoom))
+    destination.write(&name, &with_legend(enlarged(heat, request.zoom)))
 }
 
 /// Two variants that are to be compared: the second takes over the frame, and the knobs that it has too.
@@ -472,7 +504,7 @@ fn pair_of<'a>(
     that: &'a Variant,
     request: &Request,
 ) -> Result<(Scene<'a>, Scene<'a>), Failure> {
-    let given = load(request, &[this, that])?;
+    let given = load(request)?;
     let first = scene_of(this, request, &given)?;
     let mut second = Scene { frame: first.frame, ..sized(that, request, &given)? };
     second.knobs.take_over(&first.knobs);

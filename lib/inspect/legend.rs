@@ -1,0 +1,68 @@
+//! What the colors of an overdraw picture mean, in the picture.
+
+use super::steps::HEAT;
+use crate::color::Color;
+use crate::figure::glyphs::{INK, LABEL_HEIGHT, PAPER, label, label_width};
+use crate::figure::picture::paste;
+use crate::framebuffer::Framebuffer;
+use crate::rect::Rect;
+
+const OUTLINE: Color = Color::gray(120);
+const SWATCH: i32 = 12;
+const GAP: i32 = 6;
+
+/// The picture with a strip below it: a swatch of each color and how many writes it stands for.
+#[must_use]
+pub fn with_legend(picture: Framebuffer) -> Framebuffer {
+    let last = HEAT.len() - 1;
+    let text = |count: usize| if count == last { format!("{count}+") } else { count.to_string() };
+    let (cell, row) = (SWATCH + GAP + label_width(&text(last)) + GAP, LABEL_HEIGHT + GAP);
+    // Of what does not fit beside the others, a row of its own.
+    let width = (picture.width() as i32).max(GAP + cell);
+    let in_a_row = (width - GAP) / cell;
+    let strip = GAP + (HEAT.len() as i32 + in_a_row - 1) / in_a_row * row;
+    let height = picture.height() as i32 + strip;
+    if height > Framebuffer::MAX_SIDE as i32 {
+        return picture;
+    }
+    let mut result = Framebuffer::new(width as u32, height as u32);
+    result.clear(PAPER);
+    paste(&mut result, &picture, 0, strip);
+    for (count, (color, _)) in HEAT.iter().enumerate() {
+        let (column, down) = (count as i32 % in_a_row, count as i32 / in_a_row);
+        let (left, bottom) = (GAP + column * cell, strip - (down + 1) * row);
+        let swatch = Rect { left, bottom, right: left + SWATCH, top: bottom + LABEL_HEIGHT };
+        result.fill(swatch, OUTLINE);
+        let Rect { left, bottom, right, top } = swatch;
+        result.fill(Rect { left: left + 1, bottom: bottom + 1, right: right - 1, top: top - 1 }, *color);
+        label(&mut result, &text(count), (right + GAP, bottom), INK);
+    }
+    result
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_color_is_below_a_picture_of_any_width() {
+        for (size, expected) in [
+            ((640, 480), (640, 480 + 22)),
+            ((160, 120), (160, 120 + 38)),
+            ((100, 10), (100, 10 + 70)),
+            ((1, 1), (44, 1 + 118)),
+            ((20, Framebuffer::MAX_SIDE), (20, Framebuffer::MAX_SIDE)),
+        ] {
+            let mut picture = Framebuffer::new(size.0, size.1);
+            picture.clear(Color::GREEN);
+            let result = with_legend(picture);
+            assert_eq!((result.width(), result.height()), expected);
+            let below = (expected.1 - size.1) as i32;
+            assert_eq!(result.get(0, below), Some(Color::GREEN));
+            assert_eq!(result.get(0, expected.1 as i32 - 1), Some(Color::GREEN), "the picture stays whole");
+            let has =
+                |color| (0..below).any(|y| (0..expected.0 as i32).any(|x| result.get(x, y) == Some(color)));
+            assert!(below == 0 || HEAT.iter().all(|(color, _)| has(*color)), "{size:?}");
+        }
+    }
+}
