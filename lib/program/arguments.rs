@@ -7,6 +7,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 
 use super::programs::PROGRAMS;
+use super::show::Asked;
 use crate::figure::picture::Zoom;
 use crate::figure::{Chapter, Mistake, RasterizerChoice, Variant};
 use crate::framebuffer::Framebuffer;
@@ -38,6 +39,7 @@ pub(super) struct Request {
     pub(super) verbose: bool,
     pub(super) steps: bool,
     pub(super) overdraw: bool,
+    pub(super) show: Option<Asked>,
 }
 
 /// The form of a history.
@@ -86,6 +88,7 @@ impl Request {
             verbose: matches.get_flag("verbose"),
             steps: matches.get_flag("steps"),
             overdraw: matches.get_flag("overdraw"),
+            show: matches.get_one("show").copied(),
         })
     }
 
@@ -120,6 +123,7 @@ fn command(chapter: &Chapter) -> Command {
         .args(subject(chapter))
         .arg(rasterizer(chapter))
         .args(what_to_tell())
+        .arg(show())
 }
 
 fn switch(id: &'static str, help: &'static str) -> Arg {
@@ -200,6 +204,25 @@ fn rasterizer(chapter: &Chapter) -> Arg {
     )
     .value_parser(parse)
     .hide(chapter.variants.iter().all(|variant| variant.rasterizer.is_none()))
+}
+
+/// Whether the picture is shown in the terminal, and how.
+fn show() -> Arg {
+    let parse = PossibleValuesParser::new(Asked::ALL.map(Asked::name)).map(|name| {
+        let named = Asked::ALL.into_iter().find(|asked| asked.name() == name);
+        named.unwrap_or(Asked::Auto)
+    });
+    option(
+        "show",
+        "HOW",
+        "Show the picture in the terminal instead of writing a file: in half blocks, or as a picture where the terminal is \
+         known to take them; HOW names the way for others (sixel, for example, is not asked for)",
+    )
+    .num_args(0..=1)
+    .require_equals(true)
+    .default_missing_value(Asked::Auto.name())
+    .value_parser(parse)
+    .conflicts_with_all(["all", "animate", "inspect", "out", "steps"])
 }
 
 fn how_to_draw(chapter: &Chapter) -> [Arg; 6] {

@@ -10,6 +10,7 @@ mod output;
 mod palette;
 mod programs;
 mod run;
+mod show;
 
 pub use failure::Failure;
 pub use programs::{PROGRAMS, Program};

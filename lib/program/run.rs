@@ -11,6 +11,7 @@ use super::arguments::{Comparison, Format, Request, list};
 use super::failure::Failure;
 use super::output::{Destination, note, say};
 use super::programs::PROGRAMS;
+use super::show::Screen;
 use crate::figure::picture::{Zoom, difference, side_by_side, zoomed};
 use crate::figure::{Chapter, DrawOptions, Mistake, RasterizerChoice, Subject, Variant};
 use crate::files::{FileError, load_texture, shown};
@@ -54,7 +55,10 @@ fn run(chapter: &Chapter, request: &Request) -> Result<(), Failure> {
         return say(list(chapter).trim_end());
     }
     let default = || PathBuf::from("out").join(chapter.name);
-    let destination = Destination::new(request.out.clone().unwrap_or_else(default))?;
+    let destination = match request.show {
+        Some(asked) => Destination::Screen(Screen::find(asked)?),
+        None => Destination::new(request.out.clone().unwrap_or_else(default))?,
+    };
     if request.all {
         if destination.is_single() && chapter.variants.len() > 1 {
             return Err(Failure::Usage("--all draws several pictures: --out must name a folder".to_owned()));
@@ -75,7 +79,8 @@ fn run(chapter: &Chapter, request: &Request) -> Result<(), Failure> {
         None if request.animate => animate(variant, request, &destination),
         None => {
             draw_one(variant, request, &destination)?;
-            if request.variant.is_none() && std::io::stderr().is_terminal() {
+            // Below a picture in the terminal, they would push its top out of sight.
+            if request.variant.is_none() && request.show.is_none() && std::io::stderr().is_terminal() {
                 note(&hints(chapter, variant));
             }
             Ok(())
