@@ -17,6 +17,9 @@ pub(super) const CELL: (u32, u32) = (10, 20);
 /// The pixels of a cell where the picture takes as many pixels as it has: so small that it fits with the smallest fonts.
 pub(super) const SMALL_CELL: (u32, u32) = (6, 12);
 
+/// The most pixels of a side as sixels: xterm cuts off more.
+pub(super) const MOST_SIXELS: u32 = 1000;
+
 /// The most characters in one of kitty's sequences.
 const CHUNK: usize = 4096;
 

@@ -23,7 +23,7 @@ use super::failure::Failure;
 use crate::framebuffer::Framebuffer;
 use blocks::blocks;
 use fit::{fitted, within};
-use graphics::{CELL, SMALL_CELL, iterm, kitty, sixel};
+use graphics::{CELL, MOST_SIXELS, SMALL_CELL, iterm, kitty, sixel};
 pub(super) use terminal::Asked;
 use terminal::{Choice, How, Output, choose, columns_of};
 
@@ -76,7 +76,10 @@ fn rendered(picture: &Framebuffer, how: How, (columns, rows): (u32, u32)) -> Res
     let size = (picture.width(), picture.height());
     match how {
         How::Blocks(colors) => Ok(blocks(&fitted(picture, pixels((1, 2))), colors)),
-        How::Sixel => Ok(sixel(&fitted(picture, pixels(SMALL_CELL)))),
+        How::Sixel => {
+            let (width, height) = pixels(SMALL_CELL);
+            Ok(sixel(&fitted(picture, (width.min(MOST_SIXELS), height.min(MOST_SIXELS)))))
+        }
         How::Kitty | How::Iterm => {
             let (width, height) = within(size, pixels(CELL));
             let shown = (width.div_ceil(CELL.0), height.div_ceil(CELL.1));
@@ -141,6 +144,8 @@ mod tests {
         let shown = pixels_of_sixel(&rendered(&picture, How::Sixel, (5, 40)).expect("no file"));
         let picture = image_of(&picture);
         assert_eq!(shown.dimensions(), picture.dimensions());
+        let large = rendered(&gradient(1600, 8), How::Sixel, (300, 40)).expect("no file");
+        assert_eq!(pixels_of_sixel(&large).dimensions(), (1000, 5));
         for (shown, pixel) in shown.pixels().zip(picture.pixels()) {
             // A color has 101 steps a channel.
             assert!(shown.0.iter().zip(pixel.0).all(|(&a, b)| a.abs_diff(b) <= 2), "{shown:?} {pixel:?}");
