@@ -215,8 +215,8 @@ fn show() -> Arg {
     option(
         "show",
         "HOW",
-        "Show the picture in the terminal instead of writing a file: in half blocks, or as a picture where the terminal is \
-         known to take them; HOW names the way for others (sixel, for example, is not asked for)",
+        "Show the picture in the terminal instead of writing a file: in half blocks, or whole where the terminal is known \
+         by its variables to take pictures; to any other, HOW names the way",
     )
     .num_args(0..=1)
     .require_equals(true)
