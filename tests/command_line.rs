@@ -358,6 +358,14 @@ fn what_makes_no_sense_is_refused() {
     refused("too_wide", &["affine", "--compare", "--size", "6000x10"], 2, "too wide");
     refused("format", &["--out", "x.jpg"], 2, ".png .bmp .tga .ppm");
     refused("no_format", &["--out", "x.txt"], 2, "'.txt' is no picture format that is written");
+    refused("show_nowhere", &["--show"], 2, "--show=blocks prints the picture nevertheless");
+    refused("show_kitty_nowhere", &["affine", "--show=kitty"], 2, "standard output is none");
+    refused("show_how", &["--show=ascii"], 2, "auto, blocks, kitty, iterm, sixel");
+    refused("show_all", &["--all", "--show=blocks"], 2, "--show");
+    refused("show_and_out", &["--show=blocks", "--out", "a.png"], 2, "--out");
+    refused("show_steps", &["--show=blocks", "--steps"], 2, "--steps");
+    refused("show_inspect", &["--show=blocks", "--inspect", "1,1"], 2, "--inspect");
+    refused("show_animate", &["--show=blocks", "--animate"], 2, "--animate");
     refused("list_and_more", &["affine", "--list"], 2, "--list");
 }
 
@@ -460,6 +468,33 @@ fn a_version_and_standard_output() {
     assert!(output.status.success(), "{}", text(&output.stderr));
     let picture = image::load_from_memory(&output.stdout).expect("a picture on standard output");
     assert_eq!((picture.width(), picture.height()), (40, 30));
+    assert!(files(&folder).is_empty(), "nothing is written");
+}
+
+#[test]
+fn a_picture_in_characters() {
+    let folder = folder("show");
+    let run = |arguments: &[&str], variables: &[(&str, &str)]| {
+        let output = Command::new(env!("CARGO_BIN_EXE_ch05_perspective_correct"))
+            .args(arguments)
+            .env_remove("NO_COLOR")
+            .env_remove("COLUMNS")
+            .envs(variables.iter().copied())
+            .current_dir(&folder)
+            .output()
+            .expect("the program starts");
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        (text(&output.stdout), text(&output.stderr))
+    };
+    let (shown, said) = run(&["affine", "--show=blocks", "--size", "200x3"], &[("COLUMNS", "100")]);
+    assert_eq!((shown.lines().count(), shown.matches('▀').count()), (1, 100), "{shown}");
+    assert!(shown.starts_with("\x1b[38;2;") && shown.ends_with("▀\x1b[0m\n"), "{shown}");
+    assert_eq!(said, "affine: 200×3\n");
+    let (shown, _) = run(&["affine", "--show=blocks"], &[]);
+    assert_eq!((shown.lines().count(), shown.matches('▀').count()), (30, 30 * 80));
+    let (shown, said) = run(&["affine", "--show=blocks", "--compare"], &[("NO_COLOR", "1")]);
+    assert!(!shown.contains('\x1b') && shown.contains('░'), "{shown}");
+    assert!(said.starts_with("affine--correct: 1928×480\nnote: shades in place of colors"), "{said}");
     assert!(files(&folder).is_empty(), "nothing is written");
 }
 

@@ -9,6 +9,7 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, ArgAction, ArgMatches, Command};
 
 use super::programs::PROGRAMS;
+use super::show::Asked;
 use crate::figure::picture::Zoom;
 use crate::figure::{Chapter, Knob, Mistake, RasterizerChoice, Variant};
 use crate::framebuffer::Framebuffer;
@@ -48,6 +49,7 @@ pub(super) struct Request {
     pub(super) knobs: bool,
     /// Whether a window is to be opened.
     pub(super) window: bool,
+    pub(super) show: Option<Asked>,
 }
 
 /// The form of a history.
@@ -102,6 +104,7 @@ impl Request {
             sweep: text("sweep"),
             knobs: matches.get_flag("knobs"),
             window: matches.get_flag("window"),
+            show: matches.get_one("show").copied(),
         })
     }
 
@@ -171,6 +174,7 @@ fn command(chapter: &Chapter) -> Command {
         .args(subject(chapter))
         .arg(rasterizer(chapter))
         .args(what_to_tell())
+        .arg(show())
 }
 
 fn switch(id: &'static str, help: &'static str) -> Arg {
@@ -317,7 +321,28 @@ fn window() -> Arg {
         "window",
         "Open a window: turn knobs, drag points and models, look at single pixels; H tells the keys",
     )
-    .conflicts_with_all(["all", "animate", "compare", "inspect", "steps", "overdraw", "knobs", "zoom"])
+    .conflicts_with_all([
+        "all", "animate", "compare", "inspect", "steps", "overdraw", "knobs", "zoom", "show",
+    ])
+}
+
+/// Whether the picture is shown in the terminal, and how.
+fn show() -> Arg {
+    let parse = PossibleValuesParser::new(Asked::ALL.map(Asked::name)).map(|name| {
+        let named = Asked::ALL.into_iter().find(|asked| asked.name() == name);
+        named.unwrap_or(Asked::Auto)
+    });
+    option(
+        "show",
+        "HOW",
+        "Show the picture in the terminal instead of writing a file: in half blocks, or whole where the terminal is known \
+         by its variables to take pictures; to any other, HOW names the way",
+    )
+    .num_args(0..=1)
+    .require_equals(true)
+    .default_missing_value(Asked::Auto.name())
+    .value_parser(parse)
+    .conflicts_with_all(["all", "animate", "inspect", "knobs", "out", "steps", "sweep"])
 }
 
 fn how_to_draw(chapter: &Chapter) -> [Arg; 6] {

@@ -10,6 +10,7 @@ mod output;
 mod palette;
 mod programs;
 mod run;
+mod show;
 #[cfg(feature = "window")]
 mod window;
 mod wrap;

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use image::ImageFormat;
 
 use super::failure::Failure;
+use super::show::Screen;
 use crate::framebuffer::Framebuffer;
 use crate::save::{encode, replace};
 
@@ -19,6 +20,8 @@ pub(super) enum Destination {
     Folder(PathBuf),
     /// A single picture, as a PNG file on standard output.
     Output,
+    /// A single picture, shown on standard output.
+    Screen(Screen),
 }
 
 impl Destination {
@@ -43,7 +46,7 @@ impl Destination {
 
     /// Whether only one picture can go there.
     pub(super) const fn is_single(&self) -> bool {
-        matches!(self, Self::File(_) | Self::Output)
+        matches!(self, Self::File(_) | Self::Output | Self::Screen(_))
     }
 
     /// Where the picture called `name` goes; `None` for standard output.
@@ -51,16 +54,14 @@ impl Destination {
         match self {
             Self::File(path) => Some(path.clone()),
             Self::Folder(folder) => Some(folder.join(format!("{name}.{extension}"))),
-            Self::Output => None,
+            Self::Output | Self::Screen(_) => None,
         }
     }
 
     /// Writes the picture called `name`, and prints where it is.
     pub(super) fn write(&self, name: &str, picture: &Framebuffer) -> Result<(), Failure> {
         let Some(path) = self.path(name, "png") else {
-            let bytes = encode(picture, ImageFormat::Png)
-                .map_err(|error| Failure::Runtime(format!("cannot write to standard output: {error}")))?;
-            return put(&bytes);
+            return self.put(name, picture);
         };
         if extension(&path).as_deref() == Some("gif") {
             return Err(Failure::Usage(format!("{} is for an animation: give --animate", path.display())));
@@ -68,6 +69,20 @@ impl Destination {
         let format = ImageFormat::from_path(&path).unwrap_or(ImageFormat::Png);
         let bytes = encode(picture, format).map_err(|error| cannot_write(&path, &error))?;
         replace_file(&path, &bytes)
+    }
+
+    /// Writes the picture called `name` to standard output.
+    fn put(&self, name: &str, picture: &Framebuffer) -> Result<(), Failure> {
+        let cannot = |error| Failure::Runtime(format!("cannot write to standard output: {error}"));
+        let Self::Screen(screen) = self else {
+            return put(&encode(picture, ImageFormat::Png).map_err(cannot)?);
+        };
+        put(&screen.rendered(picture).map_err(cannot)?)?;
+        note(&format!("{name}: {}×{}", picture.width(), picture.height()));
+        if let Some(line) = screen.note() {
+            note(line);
+        }
+        Ok(())
     }
 
     /// Writes the animation called `name`, as `encode` makes it for the format, and prints where it is.

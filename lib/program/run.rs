@@ -12,6 +12,7 @@ use super::arguments::{Comparison, Format, Request, knob_list, list};
 use super::failure::Failure;
 use super::output::{Destination, note, say};
 use super::programs::{PROGRAMS, Program};
+use super::show::Screen;
 use super::wrap::{WIDEST, terminal_width, wrap_columns};
 use crate::figure::picture::{Zoom, difference, side_by_side, zoomed};
 use crate::figure::{
@@ -72,7 +73,10 @@ fn run(chapter: &Chapter, request: &Request) -> Result<(), Failure> {
         return say(list.trim_end());
     }
     let default = || PathBuf::from("out").join(chapter.name);
-    let destination = Destination::new(request.out.clone().unwrap_or_else(default))?;
+    let destination = match request.show {
+        Some(asked) => Destination::Screen(Screen::find(asked)?),
+        None => Destination::new(request.out.clone().unwrap_or_else(default))?,
+    };
     if request.all {
         if destination.is_single() && chapter.variants.len() > 1 {
             return Err(Failure::Usage("--all draws several pictures: --out must name a folder".to_owned()));
@@ -102,7 +106,8 @@ fn run(chapter: &Chapter, request: &Request) -> Result<(), Failure> {
         None if request.animate => animate(variant, request, &destination),
         None => {
             draw_one(variant, request, &destination)?;
-            if request.variant.is_none() && std::io::stderr().is_terminal() {
+            // Below a picture in the terminal, they would push its top out of sight.
+            if request.variant.is_none() && request.show.is_none() && std::io::stderr().is_terminal() {
                 note(&hints(chapter, variant));
             }
             Ok(())

@@ -91,6 +91,9 @@ fn task(command: &str) -> Task {
     if command.contains(['|', '>', '"', '\'', '$', '…']) {
         return Task::LeaveOut("needs a shell");
     }
+    if words.iter().any(|word| word == "--show") {
+        return Task::LeaveOut("needs a terminal");
+    }
     match words.get(1).map(String::as_str) {
         Some("run" | "build") => Task::Run(words),
         Some("test") => match words.iter().position(|word| word == "--test").and_then(|at| words.get(at + 1))
