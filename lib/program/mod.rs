@@ -5,11 +5,13 @@
 
 mod animation;
 mod arguments;
+mod choice;
 mod failure;
 mod output;
 mod palette;
 mod programs;
 mod run;
+mod scenes;
 mod show;
 #[cfg(feature = "window")]
 mod window;

@@ -4,9 +4,12 @@ use std::time::{Duration, Instant};
 
 use minifb::{Key, KeyRepeat, MouseButton, MouseMode, Window, WindowOptions};
 
+use super::arguments::Request;
 use super::failure::Failure;
 use super::output::{Destination, note, say};
+use super::scenes::{load, runtime_failure, scene_of, sweepable};
 use crate::color::Color;
+use crate::figure::{Chapter, Variant};
 use crate::framebuffer::Framebuffer;
 use crate::live::{Event, Live, View};
 use crate::rect::Pixel;
@@ -29,8 +32,25 @@ const WIDTH: u32 = 640;
 /// The most pictures a second.
 const RATE: usize = 60;
 
-/// Opens the window, and returns when it is closed. What is saved goes to `destination`.
-pub(super) fn open(live: Live<'_>, destination: &Destination) -> Result<(), Failure> {
+/// Opens the window on a variant, and returns when it is closed. What is saved goes to `destination`.
+pub(super) fn open_window(
+    chapter: &Chapter,
+    variant: &Variant,
+    request: &Request,
+    destination: &Destination,
+) -> Result<(), Failure> {
+    let given = load(request)?;
+    let mut live = Live::new(chapter, scene_of(variant, request, &given)?, given);
+    if let Some(name) = &request.sweep {
+        sweepable(variant, name)?;
+        live.take_knob(name);
+        live.apply(Event::Run).map_err(runtime_failure)?;
+    }
+    show(live, destination)
+}
+
+/// Shows what is looked at until the window is closed.
+fn show(live: Live<'_>, destination: &Destination) -> Result<(), Failure> {
     let (width, height) = live.scene().size;
     let scale = (WIDTH / width).max(1);
     let options = WindowOptions { resize: true, ..WindowOptions::default() };
@@ -124,7 +144,7 @@ impl Viewer<'_> {
     }
 
     fn apply(&mut self, event: Event) -> Result<(), Failure> {
-        let changed = self.live.apply(event).map_err(|error| Failure::Runtime(error.to_string()))?;
+        let changed = self.live.apply(event).map_err(runtime_failure)?;
         if changed {
             self.shown.picture = None;
         }
