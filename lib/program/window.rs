@@ -1,8 +1,10 @@
 //! The live window: its keys and buttons become events of [`crate::live`], and it shows the picture that comes of them.
 
+use std::cell::RefCell;
+use std::rc::Rc;
 use std::time::{Duration, Instant};
 
-use minifb::{Key, KeyRepeat, MouseButton, MouseMode, Window, WindowOptions};
+use minifb::{InputCallback, Key, MouseButton, MouseMode, Window, WindowOptions};
 
 use super::arguments::Request;
 use super::failure::Failure;
@@ -57,16 +59,20 @@ fn show(live: Live<'_>, destination: &Destination) -> Result<(), Failure> {
     let size = [width, height].map(|side| (side * scale) as usize);
     let mut window = Window::new(live.scene().variant.name, size[0], size[1], options).map_err(no_window)?;
     window.set_target_fps(RATE);
+    let keys = Keys::default();
+    window.set_input_callback(Box::new(keys.clone()));
     note(HELP);
     let mut view = Viewer {
         live,
         destination,
         shown: Shown::default(),
+        keys,
+        is_closed: false,
         pointer: None,
         pressed: None,
         ticked: Instant::now(),
     };
-    while window.is_open() && !window.is_key_down(Key::Escape) {
+    while window.is_open() && !view.is_closed {
         view.frame(&mut window)?;
     }
     let Shown { count, slowest, .. } = view.shown;
@@ -78,6 +84,26 @@ fn no_window(error: minifb::Error) -> Failure {
     Failure::Runtime(format!(
         "no window can be opened ({error}): is there a display? --show draws in the terminal"
     ))
+}
+
+/// The keys that went down since the last round. Asking which are down would miss one that goes up within a round.
+#[derive(Clone, Default)]
+struct Keys(Rc<RefCell<Vec<Key>>>);
+
+impl InputCallback for Keys {
+    fn add_char(&mut self, _: u32) {}
+
+    fn set_key_state(&mut self, key: Key, is_down: bool) {
+        if is_down {
+            self.0.borrow_mut().push(key);
+        }
+    }
+}
+
+impl Keys {
+    fn take(&self) -> Vec<Key> {
+        self.0.take()
+    }
 }
 
 /// The picture on the window, and what drawing cost.
@@ -121,6 +147,8 @@ struct Viewer<'a> {
     live: Live<'a>,
     destination: &'a Destination,
     shown: Shown,
+    keys: Keys,
+    is_closed: bool,
     /// The pixel of the shown picture under the pointer.
     pointer: Option<Pixel>,
     /// Where the button went down, if it has not moved since.
@@ -131,7 +159,7 @@ struct Viewer<'a> {
 impl Viewer<'_> {
     /// One round: what came in, then what is seen.
     fn frame(&mut self, window: &mut Window) -> Result<(), Failure> {
-        for key in window.get_keys_pressed(KeyRepeat::Yes) {
+        for key in self.keys.take() {
             self.key(key)?;
         }
         self.mouse(window)?;
@@ -172,6 +200,10 @@ impl Viewer<'_> {
             Key::Equal | Key::NumPadPlus => Event::Magnify(1, here),
             Key::Minus | Key::NumPadMinus => Event::Magnify(-1, here),
             Key::S => return self.save(),
+            Key::Escape => {
+                self.is_closed = true;
+                return Ok(());
+            }
             Key::H | Key::Slash => {
                 note(HELP);
                 return Ok(());
