@@ -55,7 +55,7 @@ fn a_model_without_a_variant_is_drawn_by_the_first_that_can() {
     // The leads of both draw none.
     let programs = [
         (env!("CARGO_BIN_EXE_ch02_triangles"), "facets"),
-        (env!("CARGO_BIN_EXE_ch10_matrices_lighting"), "lit"),
+        (env!("CARGO_BIN_EXE_ch10_matrices_lighting"), "turntable"),
     ];
     for (program, variant) in programs {
         let output =
@@ -91,8 +91,8 @@ fn who_draws_models_is_told_to_those_who_ask_the_wrong_one() {
              Textures are drawn by other programs: ch10_matrices_lighting\n",
         ),
         (last, &["spikes", "--compare", "rotation", "--flat"], "error: 'rotation' draws no model"),
-        (last, &["rotation", "--model", "x.obj"], "\nModels are drawn by lit, "),
-        (last, &["--all", "--flat"], "\nModels are drawn by lit, "),
+        (last, &["rotation", "--model", "x.obj"], "\nModels are drawn by turntable, lit, "),
+        (last, &["--all", "--flat"], "\nModels are drawn by turntable, lit, "),
     ] {
         let output = Command::new(program).args(arguments).current_dir(&folder).output().expect("it starts");
         let stderr = text(&output.stderr);
@@ -184,7 +184,7 @@ fn it_is_said_which_pictures_the_size_does_not_scale() {
         assert_eq!(text(&output.stderr), if is_said { said } else { "" }, "{variant} {size}");
     }
     let (help, list) = (text(&run(&["--help"]).stdout), text(&run(&["--list"]).stdout));
-    assert!(help.contains("it only crops or borders what is drawn in pixels: pixel\n"), "{help}");
+    assert!(help.contains("scenes scale to fit, but not pixel\n"), "{help}");
     let marked: Vec<&str> = list.lines().filter(|line| line.contains("[in pixels")).collect();
     assert!(marked.len() == 1 && marked[0].trim_start().starts_with("pixel "), "{list}");
 }
@@ -404,9 +404,11 @@ fn help_reads_well() {
     }
     // No terminal: 100 columns. The second lines of the options and of the variants begin where their first ones do.
     assert!(help.lines().all(|line| line.chars().count() <= 100), "{help}");
-    for second in
-        ["\n                           PNG on standard output", "\n                towards the horizon"]
-    {
+    let second_lines = [
+        "\n                    out/ch05_perspective_correct]",
+        "\n  ch07_clipping, ch08_cvv, ch09_pipeline, ch10_matrices_lighting\n",
+    ];
+    for second in second_lines {
         assert!(help.contains(second), "{second:?} is missing in:\n{help}");
     }
 }
@@ -515,4 +517,80 @@ fn pixels_of_a_zoomed_picture_are_found_again() {
     let ticks: Vec<u32> =
         (left..zoomed.width()).filter(|&x| is_ink(x)).map(|x| 20 + (x - left) / 16).collect();
     assert!(ticks.contains(&60) && ticks.iter().all(|column| column % 5 == 0), "{ticks:?}");
+}
+
+/// The program of chapter 10, in a folder.
+fn last(folder: &Path, arguments: &[&str]) -> Output {
+    let program = env!("CARGO_BIN_EXE_ch10_matrices_lighting");
+    Command::new(program).args(arguments).current_dir(folder).output().expect("it starts")
+}
+
+#[test]
+fn knobs_are_set_swept_and_listed() {
+    let folder = folder("knobs");
+    let listed = text(&last(&folder, &["turntable", "--knobs"]).stdout);
+    assert!(listed.contains("  azimuth = 35   (a number, -180 to 180 °)\n"), "{listed}");
+    let none = text(&last(&folder, &["still-life", "--knobs"]).stdout);
+    assert_eq!(none, "'still-life' has no knobs\n");
+
+    // Every way to say the same draws the same; what is set stands in the name.
+    let small = ["turntable", "--size", "64x48"];
+    let drawn = |more: &[&str], name: &str| {
+        let output = last(&folder, &[&small[..], more].concat());
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        let path = format!("out/ch10_matrices_lighting/{name}.png");
+        assert_eq!(text(&output.stdout).trim_end(), path);
+        std::fs::read(folder.join(path)).expect("written")
+    };
+    let own = drawn(&[], "turntable");
+    let set = drawn(&["--set", "azimuth=-60", "--set", "elevation=10"], "turntable-azimuth--60-elevation-10");
+    let eye = drawn(&["--eye", "-60,10"], "turntable-azimuth--60-elevation-10");
+    assert!(own != set && set == eye);
+    assert!(own != drawn(&["--light", "80,0"], "turntable-light-azimuth-80-light-elevation-0"));
+    assert!(own != drawn(&["--background", "#ff0000"], "turntable-background-ff0000"));
+
+    let sweep =
+        last(&folder, &["turntable", "--size", "16x12", "--sweep", "elevation", "--out", "sweep.png"]);
+    assert!(sweep.status.success(), "{}", text(&sweep.stderr));
+    let bytes = std::fs::read(folder.join("sweep.png")).expect("written");
+    let frames = bytes.windows(4).filter(|chunk| chunk == b"fcTL").count();
+    assert_eq!(frames, 60);
+}
+
+#[test]
+fn knobs_that_there_are_not_are_refused_with_those_that_there_are() {
+    let folder = folder("no_knobs");
+    let cases: [(&[&str], &str); 8] = [
+        (&["turntable", "--set", "tilt=1"], "there is no knob 'tilt'\nKnobs of 'turntable'"),
+        (&["turntable", "--set", "elevation=90"], "'elevation' cannot be '90': it is a number, -89 to 89 °"),
+        (&["turntable", "--set", "elevation"], "expected NAME=VALUE"),
+        (&["turntable", "--background", "red"], "'background' cannot be 'red': it is a color, #RRGGBB"),
+        (&["turntable", "--sweep", "background"], "it has no range to be swept"),
+        (&["turntable", "--sweep", "tilt"], "there is no knob 'tilt'"),
+        (&["still-life", "--eye", "1,2"], "'still-life' has no knobs"),
+        (&["--all", "--set", "azimuth=1"], "cannot be used with"),
+    ];
+    for (arguments, reason) in cases {
+        let output = last(&folder, arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        assert!(text(&output.stderr).contains(reason), "{arguments:?}: {}", text(&output.stderr));
+    }
+    assert!(files(&folder).is_empty());
+}
+
+#[test]
+fn a_model_that_is_not_seen_is_told_of() {
+    let folder = folder("unseen");
+    let model = |name: &str, text: &str| std::fs::write(folder.join(name), text).expect("written");
+    model("away.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 3 2\n");
+    model("line.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
+    let told = |variant: &str, name: &str| {
+        let arguments = [variant, "--frame", "0", "--size", "64x48", "--model", name, "--out", "x.png"];
+        let output = last(&folder, &arguments);
+        assert!(output.status.success());
+        text(&output.stderr)
+    };
+    assert!(told("lit", "away.obj").starts_with("nothing of away.obj is visible: its faces turn away"));
+    assert!(told("lit", "line.obj").starts_with("nothing of line.obj is visible: its faces have no area"));
+    assert_eq!(told("turntable", "away.obj"), "", "it draws both sides");
 }

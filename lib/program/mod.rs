@@ -7,12 +7,14 @@ mod animation;
 mod arguments;
 mod choice;
 mod failure;
+mod options;
 mod output;
 mod palette;
 mod programs;
 mod run;
 mod scenes;
 mod show;
+mod values;
 #[cfg(feature = "window")]
 mod window;
 mod wrap;

@@ -7,9 +7,10 @@ use std::process::ExitCode;
 use clap::error::ErrorKind;
 
 use super::animation::encode;
-use super::arguments::{Format, Request, knob_list, list};
+use super::arguments::{Format, Request};
 use super::choice::{check_model_options, find, hints, other, unnamed};
 use super::failure::Failure;
+use super::options::{knob_list, list};
 use super::output::{Destination, note, say};
 use super::scenes::{check_inside, load, pair_of, scene_of, sweepable, unseen};
 use super::show::Screen;

@@ -5,8 +5,9 @@ use std::path::Path;
 use glam::DVec3;
 
 use super::animation::progress_bar;
-use super::arguments::{Request, knob_list};
+use super::arguments::Request;
 use super::failure::Failure;
+use super::options::knob_list;
 use super::output::note;
 use crate::figure::picture::{Zoom, difference};
 use crate::figure::{DrawOptions, Given, Knob, KnobError, RasterizerChoice, Scene, Subject, Variant};
