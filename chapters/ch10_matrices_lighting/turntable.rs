@@ -46,7 +46,6 @@ const LAMP: f64 = 0.95;
 const SKY: f64 = 0.26;
 const GROUND: f64 = 0.09;
 
-// ANCHOR: eye
 /// The direction of an azimuth and an elevation: 0, 0 is towards the reader; to the right, then up.
 fn direction(azimuth: f64, elevation: f64) -> DVec3 {
     let [(sin_a, cos_a), (sin_e, cos_e)] = [azimuth, elevation].map(|angle| libm::sincos(degrees(angle)));
@@ -67,7 +66,6 @@ fn camera(center: DVec3, radius: f64, towards: DVec3) -> (DMat4, DVec3) {
     );
     (frustum.matrix() * look_at(eye, center, DVec3::Y), eye)
 }
-// ANCHOR_END: eye
 
 /// A surface under a lamp and a sky.
 struct Surface<'a> {

@@ -2,6 +2,7 @@
 //!
 //! - Pictures of `tests/snapshots` are copied into the book, and centered.
 //! - Drawings (`figures/NAME.svg`) are put into the page, where they take the colors of its theme.
+//! - A note for those who read the page on a code host, where nothing is put in, is left out.
 //! - Other files of the repository that a page links to become pages with line numbers.
 //! - Formulas, blocks named `math` and `` $`…`$ `` within a line, become MathML.
 //!
@@ -33,6 +34,9 @@ pub fn run() -> Result<(), Errors> {
         Err(work.errors)
     }
 }
+
+/// What begins a note that is not for the book.
+const HOST_NOTE: &str = "<!-- on a code host -->";
 
 struct Work {
     /// `docs/src`.
@@ -69,6 +73,11 @@ impl Work {
         let mut result = String::new();
         let mut lines = text.lines();
         while let Some(line) = lines.next() {
+            if line == HOST_NOTE {
+                // Up to the blank line below it.
+                lines.by_ref().find(|line| line.is_empty());
+                continue;
+            }
             let trimmed = line.trim_start();
             let fence: String = trimmed.chars().take_while(|it| *it == '`' || *it == '~').collect();
             if fence.len() < 3 {
