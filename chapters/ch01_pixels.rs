@@ -7,7 +7,7 @@
 
 use std::process::ExitCode;
 
-use rasterbook::figure::{Chapter, Fit, Variant, picture};
+use rasterbook::figure::{Chapter, Fit, Knob, Knobs, Variant, picture};
 use rasterbook::{Color, Framebuffer, Rect};
 
 pub(crate) const CHAPTER: Chapter = Chapter {
@@ -20,9 +20,10 @@ pub(crate) const CHAPTER: Chapter = Chapter {
             "a pawn made of 16×22 pixels, in six colors, with the grid that a screen does not show",
         )
         .size(320, 440),
-        Variant::new(
+        Variant::with_knobs(
             "pixel",
             pixel,
+            PIXEL,
             "one red pixel at (200, 200), counted from the lower left corner; try --zoom 12@200,200",
         )
         .source("section 1.4")
@@ -34,9 +35,10 @@ pub(crate) const CHAPTER: Chapter = Chapter {
         )
         .source("section 1.3, Figure 1-5")
         .size(320, 400),
-        Variant::new(
+        Variant::with_knobs(
             "subpixels",
             subpixels,
+            SUBPIXELS,
             "the three lamps of each pixel on the left, the color that the eye makes of them on the right",
         )
         .source("section 1.2, Figures 1-1 and 1-3")
@@ -44,10 +46,24 @@ pub(crate) const CHAPTER: Chapter = Chapter {
     ],
 };
 
+const PIXEL: &[Knob] = &[
+    Knob::point(
+        "place",
+        [200.0, 200.0],
+        "the pixel goes from one whole place to the next: fractions are cut off",
+    ),
+    Knob::color(
+        "color",
+        Color::RED,
+        "one color, made of three channels: with green as bright as red it is yellow",
+    ),
+];
+
 // ANCHOR: pixel
-/// One pixel.
-fn pixel(framebuffer: &mut Framebuffer) {
-    framebuffer.set(200, 200, Color::RED);
+/// One pixel: where and in which color, the knobs say.
+fn pixel(framebuffer: &mut Framebuffer, knobs: &Knobs) {
+    let place = knobs.point("place");
+    framebuffer.set(place.x as i32, place.y as i32, knobs.color("color"));
 }
 // ANCHOR_END: pixel
 
@@ -145,14 +161,22 @@ const COLORS: [[Color; 6]; 4] = [
     ],
 ];
 
+const SUBPIXELS: &[Knob] = &[Knob::color(
+    "color",
+    Color::RED,
+    "the pixel at the upper left: each of its lamps is as bright as its channel",
+)];
+
 // ANCHOR: subpixels
-/// A screen of 6×4 pixels: the lamps, and what they add up to.
-fn subpixels(framebuffer: &mut Framebuffer) {
+/// A screen of 6×4 pixels: the lamps, and what they add up to. The upper left pixel has the knob's color.
+fn subpixels(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     const CELL: i32 = 52;
+    let mut screen = COLORS;
+    screen[0][0] = knobs.color("color");
     // Made for a picture of 632×208; in a larger one all rectangles are larger.
     let fit = Fit::new(framebuffer.rect(), [632.0, 208.0]);
     framebuffer.clear(Color::gray(30));
-    for (row, colors) in (0..).zip(COLORS.iter().rev()) {
+    for (row, colors) in (0..).zip(screen.iter().rev()) {
         for (column, &color) in (0..).zip(colors) {
             let (left, bottom) = (column * CELL, row * CELL);
 

@@ -5,10 +5,11 @@
 //!
 //! New here: the digital differential analyzer, DDA (`lib/line.rs`). Book: section 2.1.
 
+use std::f64::consts::PI;
 use std::process::ExitCode;
 
 use glam::{DVec2, DVec3, dvec2};
-use rasterbook::figure::{Chapter, Fit, Subject, Variant};
+use rasterbook::figure::{Chapter, Fit, Knob, Knobs, Subject, Variant};
 use rasterbook::line::{StepAxis, dda};
 use rasterbook::{Color, Framebuffer};
 
@@ -16,15 +17,26 @@ pub(crate) const CHAPTER: Chapter = Chapter {
     name: "ch02_dda_lines",
     question: "Which pixels belong to a line between two points?",
     variants: &[
-        Variant::new("star", star, "rays in every direction, a color for each octant; none has a gap")
-            .source("section 2.1")
-            .size(480, 480),
-        Variant::new("line", line, "a vertical line: 300 pixels, one in each row, its upper end not drawn")
-            .source("section 2.1")
-            .in_pixels(),
-        Variant::new(
+        Variant::with_knobs(
+            "star",
+            star,
+            RAYS,
+            "rays in every direction, a color for each octant; none has a gap",
+        )
+        .source("section 2.1")
+        .size(480, 480),
+        Variant::with_knobs(
+            "line",
+            line,
+            LINE,
+            "a vertical line: 300 pixels, one in each row, its upper end not drawn",
+        )
+        .source("section 2.1")
+        .in_pixels(),
+        Variant::with_knobs(
             "broken",
             broken,
+            RAYS,
             "the same rays, always stepping x: steep ones fall apart into dots, vertical ones vanish",
         )
         .source("section 2.1, Figure 2-2")
@@ -40,10 +52,19 @@ pub(crate) const CHAPTER: Chapter = Chapter {
     ],
 };
 
+const LINE: &[Knob] = &[
+    Knob::point("a", [100.0, 0.0], "bring it above b: the end that is left out is still the upper one"),
+    Knob::point(
+        "b",
+        [100.0, 300.0],
+        "go round a: steep lines have a pixel in each row, flat ones in each column",
+    ),
+];
+
 // ANCHOR: line
-/// One line.
-fn line(framebuffer: &mut Framebuffer) {
-    draw_line(framebuffer, dvec2(100.0, 0.0), dvec2(100.0, 300.0), StepAxis::Longer, Color::RED);
+/// One line: its ends are knobs.
+fn line(framebuffer: &mut Framebuffer, knobs: &Knobs) {
+    draw_line(framebuffer, knobs.point("a"), knobs.point("b"), StepAxis::Longer, Color::RED);
 }
 
 /// Colors the pixels that the DDA emits.
@@ -52,14 +73,22 @@ fn draw_line(framebuffer: &mut Framebuffer, a: DVec2, b: DVec2, axis: StepAxis, 
 }
 // ANCHOR_END: line
 
+const RAYS: &[Knob] = &[Knob::number(
+    "turn",
+    0.0,
+    [0.0, 90.0],
+    "°",
+    "if only x is stepped, a ray breaks as soon as it is steeper than 45°, whatever its color",
+)];
+
 /// Rays that step along their longer axis.
-fn star(framebuffer: &mut Framebuffer) {
-    rays(framebuffer, StepAxis::Longer);
+fn star(framebuffer: &mut Framebuffer, knobs: &Knobs) {
+    rays(framebuffer, StepAxis::Longer, knobs.number("turn"));
 }
 
 /// Rays that step x whatever their slope.
-fn broken(framebuffer: &mut Framebuffer) {
-    rays(framebuffer, StepAxis::X);
+fn broken(framebuffer: &mut Framebuffer, knobs: &Knobs) {
+    rays(framebuffer, StepAxis::X, knobs.number("turn"));
 }
 
 /// A color for each eighth of the circle, counter-clockwise from the right.
@@ -75,9 +104,11 @@ const OCTANTS: [Color; 8] = [
 ];
 
 // ANCHOR: rays
-/// Rays from the middle to points all round a square, six in each octant. `fit` scales them to the size of the picture.
-fn rays(framebuffer: &mut Framebuffer, axis: StepAxis) {
+/// Rays from the middle to points all round a square, six in each octant; all are turned by an angle in
+/// degrees. `fit` scales them to the size of the picture.
+fn rays(framebuffer: &mut Framebuffer, axis: StepAxis, turn: f64) {
     let fit = Fit::new(framebuffer.rect(), [480.0, 480.0]);
+    let (sin, cos) = libm::sincos(turn * PI / 180.0);
     let center = dvec2(240.0, 240.0);
     for (octant, color) in OCTANTS.into_iter().enumerate() {
         for i in 0..6 {
@@ -85,6 +116,7 @@ fn rays(framebuffer: &mut Framebuffer, axis: StepAxis) {
             let along = 38.0 * f64::from(i);
             let ray = if octant % 2 == 0 { dvec2(228.0, along) } else { dvec2(228.0 - along, 228.0) };
             let ray = (0..octant / 2).fold(ray, |ray, _| ray.perp());
+            let ray = cos * ray + sin * ray.perp();
             draw_line(framebuffer, fit.at(center), fit.at(center + ray), axis, color);
         }
     }

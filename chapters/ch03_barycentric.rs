@@ -8,11 +8,13 @@
 
 use std::process::ExitCode;
 
-use glam::dvec2;
+use glam::{DVec2, dvec2};
 use rasterbook::exact::edge::Coverage;
-use rasterbook::figure::{Chapter, Fit, Variant, picture};
-use rasterbook::interpolate::{ScreenVertex, step_values};
+use rasterbook::figure::{Chapter, Fit, Knob, Knobs, Variant, picture};
+use rasterbook::interpolate::{ScreenVertex, barycentric_weights, step_values};
+use rasterbook::line::{StepAxis, dda};
 use rasterbook::payload::{StepLimit, Walk};
+use rasterbook::scanline::{EdgeWalk, spans};
 use rasterbook::texture::{AddressMode, Texture};
 use rasterbook::{Color, Framebuffer};
 
@@ -20,11 +22,13 @@ pub(crate) const CHAPTER: Chapter = Chapter {
     name: "ch03_barycentric",
     question: "The corners have values: which value has a pixel between them?",
     variants: &[
-        Variant::new("weights", weights, "the weight of each corner by areas: its lines of equal weight run along the opposite edge")
+        Variant::with_knobs("weights", weights, WEIGHTS, "the weight of each corner by areas: its lines of equal weight run along the opposite edge")
             .source("section 3.2.2, Figures 3-6 and 3-7"),
-        Variant::new("rgb", rgb, "red, green and blue corners, and all their mixtures between them").source("section 3.2.5"),
-        Variant::new("gray", gray, "one value a corner: black, white, black").source("section 3.2.4"),
-        Variant::new("texture", texture, "texture coordinates as values: half of the book's 2×2 texture on a triangle")
+        Variant::with_knobs("areas", areas, AREAS, "the weights of one point as areas: each small triangle has the color of the vertex opposite to it, and is the brighter the larger it is")
+            .source("section 3.2.2, Figure 3-6"),
+        Variant::with_knobs("rgb", rgb, RGB, "red, green and blue corners, and all their mixtures between them").source("section 3.2.5"),
+        Variant::with_knobs("gray", gray, GRAY, "one value a corner: black, white, black").source("section 3.2.4"),
+        Variant::with_knobs("texture", texture, TEXTURE, "texture coordinates as values: half of the book's 2×2 texture on a triangle")
             .source("section 3.3, Figures 3-10 and 3-11"),
         Variant::new("spikes", spikes, "orange: values out of the range of the corners, at the tips (past the end of an edge) and at the ends of rows")
             .source("section 11.4")
@@ -36,29 +40,42 @@ pub(crate) const CHAPTER: Chapter = Chapter {
 };
 
 /// A vertex on the screen with its values.
-fn vertex<const N: usize>(x: f64, y: f64, values: [f64; N]) -> ScreenVertex<[f64; N]> {
-    ScreenVertex { position: dvec2(x, y), varyings: values }
+fn vertex<const N: usize>(position: DVec2, values: [f64; N]) -> ScreenVertex<[f64; N]> {
+    ScreenVertex { position, varyings: values }
 }
+
+const GRAY: &[Knob] = &[
+    Knob::point("a", [100.0, 0.0], "the gray stays the same along every parallel to the edge from a to c"),
+    Knob::point("b", [0.0, 100.0], "the farther it is from a and c, the slower the gray changes"),
+    Knob::point("c", [100.0, 200.0], "bring it to the height of a: now the gray changes from row to row"),
+];
 
 // ANCHOR: gray
 /// One value a vertex, drawn as gray.
-fn gray(framebuffer: &mut Framebuffer) {
+fn gray(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     let fit = Fit::new(framebuffer.rect(), [640.0, 480.0]);
-    let triangle = [vertex(100.0, 0.0, [0.0]), vertex(0.0, 100.0, [255.0]), vertex(100.0, 200.0, [0.0])];
+    let triangle =
+        [vertex(knobs.point("a"), [0.0]), vertex(knobs.point("b"), [255.0]), vertex(knobs.point("c"), [0.0])];
     step_values(fit.triangle(triangle), Walk::default(), framebuffer.scissor(), |x, y, [value]| {
         framebuffer.set(x, y, Color::truncated([value; 3]));
     });
 }
 // ANCHOR_END: gray
 
+const RGB: &[Knob] = &[
+    Knob::point("a", [0.0, 0.0], "red goes with it, and along the edge from b to c no color changes"),
+    Knob::point("b", [240.0, 240.0], "green goes with it, and along the edge from a to c no color changes"),
+    Knob::point("c", [0.0, 480.0], "blue goes with it, and along the edge from a to b no color changes"),
+];
+
 // ANCHOR: rgb
 /// Three values a vertex, drawn as a color.
-fn rgb(framebuffer: &mut Framebuffer) {
+fn rgb(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     let fit = Fit::new(framebuffer.rect(), [640.0, 480.0]);
     let triangle = [
-        vertex(0.0, 0.0, [255.0, 0.0, 0.0]),
-        vertex(240.0, 240.0, [0.0, 255.0, 0.0]),
-        vertex(0.0, 480.0, [0.0, 0.0, 255.0]),
+        vertex(knobs.point("a"), [255.0, 0.0, 0.0]),
+        vertex(knobs.point("b"), [0.0, 255.0, 0.0]),
+        vertex(knobs.point("c"), [0.0, 0.0, 255.0]),
     ];
     step_values(fit.triangle(triangle), Walk::default(), framebuffer.scissor(), |x, y, values| {
         framebuffer.set(x, y, Color::truncated(values));
@@ -66,26 +83,57 @@ fn rgb(framebuffer: &mut Framebuffer) {
 }
 // ANCHOR_END: rgb
 
+const TEXTURE: &[Knob] = &[
+    Knob::point(
+        "a",
+        [0.0, 0.0],
+        "the texture goes with the vertices: each texel becomes a slanted parallelogram",
+    ),
+    Knob::point("b", [480.0, 0.0], "closer to a: the texels get narrow and keep their height"),
+    Knob::point(
+        "c",
+        [0.0, 480.0],
+        "bring it to the right of b: the texture leans, and its lines stay straight",
+    ),
+];
+
 // ANCHOR: texture
 /// Two values a vertex, drawn as the texel that they point to.
-fn texture(framebuffer: &mut Framebuffer) {
+fn texture(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     let fit = Fit::new(framebuffer.rect(), [640.0, 480.0]);
     let texture = Texture::book();
-    let triangle =
-        [vertex(0.0, 0.0, [0.0, 0.0]), vertex(480.0, 0.0, [1.0, 0.0]), vertex(0.0, 480.0, [0.0, 1.0])];
+    let triangle = [
+        vertex(knobs.point("a"), [0.0, 0.0]),
+        vertex(knobs.point("b"), [1.0, 0.0]),
+        vertex(knobs.point("c"), [0.0, 1.0]),
+    ];
     step_values(fit.triangle(triangle), Walk::default(), framebuffer.scissor(), |x, y, uv| {
         framebuffer.set(x, y, Color::truncated(texture.nearest(uv, AddressMode::Clamp)));
     });
 }
 // ANCHOR_END: texture
 
+const WEIGHTS: &[Knob] = &[
+    Knob::point("a", [70.0, 50.0], "the lines of one weight of a stay parallel to the edge from b to c"),
+    Knob::point(
+        "b",
+        [590.0, 130.0],
+        "bring it beyond the edge from a to c: the triangle turns over, the lines stay straight",
+    ),
+    Knob::point(
+        "c",
+        [250.0, 440.0],
+        "bring it close to the edge from a to b: its lines crowd together, for its weight changes fast",
+    ),
+];
+
 // ANCHOR: weights
 /// The three weights at every pixel as red, green and blue, with a line at every tenth.
-fn weights(framebuffer: &mut Framebuffer) {
+fn weights(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     let fit = Fit::new(framebuffer.rect(), [640.0, 480.0]);
-    let triangle = [dvec2(70.0, 50.0), dvec2(590.0, 130.0), dvec2(250.0, 440.0)];
+    let triangle = ["a", "b", "c"].map(|name| fit.at(knobs.point(name)));
     // The value of an edge function is twice the area of the small triangle over that edge.
-    let coverage = Coverage::new(triangle.map(|vertex| fit.at(vertex))).expect("area");
+    let Some(coverage) = Coverage::new(triangle) else { return };
     for (x, y, areas) in coverage.all_pixels(framebuffer.scissor()) {
         let weights = areas.map(|area| area as f64 / coverage.twice_area as f64);
         let inside = coverage.covers(areas);
@@ -102,6 +150,71 @@ fn weights(framebuffer: &mut Framebuffer) {
     }
 }
 // ANCHOR_END: weights
+
+const AREAS: &[Knob] = &[
+    Knob::point(
+        "p",
+        [330.0, 180.0],
+        "go to a: all is red; go beyond an edge: its triangle lies outside, its weight is negative",
+    ),
+    Knob::point(
+        "a",
+        [70.0, 50.0],
+        "the red triangle keeps its shape, and yet the weight of a changes: the whole does",
+    ),
+    Knob::point(
+        "b",
+        [590.0, 130.0],
+        "the green triangle keeps its shape, and yet the weight of b changes: the whole does",
+    ),
+    Knob::point(
+        "c",
+        [250.0, 440.0],
+        "the blue triangle keeps its shape, and yet the weight of c changes: the whole does",
+    ),
+];
+
+// ANCHOR: areas
+/// The weights of a point P: the small triangle opposite to A in red, to B in green, to C in blue, each the
+/// brighter the more its vertex weighs, and P in the mixture of the three. One of negative weight is striped.
+fn areas(framebuffer: &mut Framebuffer, knobs: &Knobs) {
+    let fit = Fit::new(framebuffer.rect(), [640.0, 480.0]);
+    let [a, b, c, p] = ["a", "b", "c", "p"].map(|name| fit.at(knobs.point(name)));
+    let weights = barycentric_weights(p, [a, b, c]);
+    if !weights.iter().all(|weight| weight.is_finite()) {
+        return; // A triangle without area has no weights.
+    }
+    let small = [[p, b, c], [a, p, c], [a, b, p]];
+    let color = |i: usize, brightness: f64| {
+        let mut channels = [0.0; 3];
+        channels[i] = brightness;
+        Color::truncated(channels)
+    };
+
+    // The largest first: a triangle of negative weight lies on others, and they show between its stripes.
+    let mut order = [0, 1, 2];
+    order.sort_by(|&i, &j| weights[j].total_cmp(&weights[i]));
+    for i in order {
+        let paint = color(i, 80.0 + 175.0 * weights[i].abs());
+        spans(small[i], EdgeWalk::Clamped, framebuffer.scissor(), |span| {
+            for x in span.columns() {
+                let stripe = f64::from(x + span.y) / (6.0 * fit.scale);
+                if weights[i] >= 0.0 || stripe as i32 % 2 == 0 {
+                    framebuffer.set(x, span.y, paint);
+                }
+            }
+        });
+    }
+
+    for (i, (start, end)) in [(b, c), (c, a), (a, b)].into_iter().enumerate() {
+        let (scissor, vertex) = (framebuffer.scissor(), [a, b, c][i]);
+        dda(start, end, StepAxis::Longer, scissor, |x, y| framebuffer.set(x, y, Color::WHITE));
+        framebuffer.fill(fit.mark(vertex, 6.0), color(i, 255.0));
+    }
+    framebuffer.fill(fit.mark(p, 9.0), Color::WHITE);
+    framebuffer.fill(fit.mark(p, 7.0), Color::truncated(weights.map(|weight| weight * 255.0)));
+}
+// ANCHOR_END: areas
 
 // ANCHOR: spikes
 /// Values stepped past the ends of the edges.
@@ -127,9 +240,9 @@ fn confetti(framebuffer: &mut Framebuffer, limit: StepLimit) {
             let (i, j) = (f64::from(column), f64::from(row));
             let (x, y) = (2.2 + 11.13 * i, 2.6 + 9.41 * j + 0.27 * i);
             let triangle = [
-                vertex(x, y, [0.0]),
-                vertex(x + 8.4, y + 1.7, [0.0]),
-                vertex(x + 1.8 + 0.7 * i, y + 7.6, [1.0]),
+                vertex(dvec2(x, y), [0.0]),
+                vertex(dvec2(x + 8.4, y + 1.7), [0.0]),
+                vertex(dvec2(x + 1.8 + 0.7 * i, y + 7.6), [1.0]),
             ];
             step_values(triangle, Walk { limit, ..Walk::default() }, screen.scissor(), |x, y, [value]| {
                 let is_in_range = (-1e-9..=1.0 + 1e-9).contains(&value);

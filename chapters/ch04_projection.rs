@@ -9,7 +9,7 @@
 use std::process::ExitCode;
 
 use glam::{DVec2, DVec3, DVec4, dvec2, dvec3};
-use rasterbook::figure::{Chapter, Fit, Variant};
+use rasterbook::figure::{Chapter, Fit, Knob, Knobs, Variant};
 use rasterbook::line::{StepAxis, dda};
 use rasterbook::transform::{orthographic, perspective, perspective_divide};
 use rasterbook::{Color, Framebuffer, Rect};
@@ -18,10 +18,10 @@ pub(crate) const CHAPTER: Chapter = Chapter {
     name: "ch04_projection",
     question: "Why is small what is far away?",
     variants: &[
-        Variant::new("cube", cube, "five cubes of one size, one behind the other: each looks smaller than the one before it, and so does its back")
+        Variant::with_knobs("cube", cube, CUBE, "five cubes of one size, one behind the other: each looks smaller than the one before it, and so does its back")
             .source("section 4.2.2, Figure 4-3"),
-        Variant::new("orthographic", orthographic_cubes, "the same cubes without the division: all of one size, and each hides its own back"),
-        Variant::new("rails", rails, "parallel rails meet at the horizon; the yellow points, each projected by itself, lie on them: straight stays straight")
+        Variant::with_knobs("orthographic", orthographic_cubes, ORTHOGRAPHIC, "the same cubes without the division: all of one size, and each hides its own back"),
+        Variant::with_knobs("rails", rails, RAILS, "parallel rails meet at the horizon; the yellow points, each projected by itself, lie on them: straight stays straight")
             .source("section 4.2.2, Figure 4-4"),
         Variant::new("near", near, "one scene at n = 150 (blue), 300 (green) and 600 (red): twice the near distance is twice the picture, and nothing else"),
     ],
@@ -69,9 +69,36 @@ fn draw_cube(
     }
 }
 
+const ASIDE: Knob = Knob::number(
+    "aside",
+    0.0,
+    [-200.0, 200.0],
+    "",
+    "the eye goes to the right: in perspective near cubes move the most, without it all move alike",
+);
+const CUBE: &[Knob] = &[
+    Knob::number(
+        "near",
+        520.0,
+        [100.0, 2000.0],
+        "",
+        "the picture grows with n around its middle, and the cubes keep their shapes",
+    ),
+    Knob::number(
+        "distance",
+        600.0,
+        [150.0, 2400.0],
+        "",
+        "from farther away the back of a cube is nearly as large as its front",
+    ),
+    ASIDE,
+];
+const ORTHOGRAPHIC: &[Knob] = &[ASIDE];
+
 // ANCHOR: cubes
-/// Five cubes, each farther away and more to the right than the one before it.
-fn cubes(framebuffer: &mut Framebuffer, project: impl Fn(DVec3) -> DVec4 + Copy) {
+/// Five cubes, each farther away and more to the right than the one before it. The first is at a distance from
+/// the eye, which may have gone aside.
+fn cubes(framebuffer: &mut Framebuffer, project: impl Fn(DVec3) -> DVec4 + Copy, distance: f64, aside: f64) {
     let colors = [
         Color::rgb(255, 90, 80),
         Color::rgb(255, 180, 60),
@@ -81,45 +108,59 @@ fn cubes(framebuffer: &mut Framebuffer, project: impl Fn(DVec3) -> DVec4 + Copy)
     ];
     for (i, color) in (0..).zip(colors) {
         let step = f64::from(i);
-        let center = dvec3(-230.0 + 115.0 * step, -150.0 + 75.0 * step, 600.0 + 260.0 * step);
+        let center = dvec3(-230.0 + 115.0 * step - aside, -150.0 + 75.0 * step, distance + 260.0 * step);
         draw_cube(framebuffer, project, center, 70.0, color);
     }
 }
 
 /// The cubes in perspective.
-fn cube(framebuffer: &mut Framebuffer) {
-    cubes(framebuffer, |point| perspective(point, 520.0));
+fn cube(framebuffer: &mut Framebuffer, knobs: &Knobs) {
+    let near = knobs.number("near");
+    let project = |point| perspective(point, near);
+    cubes(framebuffer, project, knobs.number("distance"), knobs.number("aside"));
 }
 
-/// The cubes without perspective.
-fn orthographic_cubes(framebuffer: &mut Framebuffer) {
-    cubes(framebuffer, orthographic);
+/// The cubes without perspective: the distance would change nothing.
+fn orthographic_cubes(framebuffer: &mut Framebuffer, knobs: &Knobs) {
+    cubes(framebuffer, orthographic, 600.0, knobs.number("aside"));
 }
 // ANCHOR_END: cubes
 
+const RAILS: &[Knob] = &[
+    Knob::number(
+        "height",
+        120.0,
+        [10.0, 220.0],
+        "",
+        "the eye goes up: the rails close, and meet where they met before",
+    ),
+    Knob::number(
+        "aside",
+        0.0,
+        [-250.0, 250.0],
+        "",
+        "the eye goes to the right: all lines turn round the point where they meet",
+    ),
+];
+
 // ANCHOR: rails
-/// A railway line towards the horizon.
-fn rails(framebuffer: &mut Framebuffer) {
-    let project = |point| perspective(point, 300.0);
+/// A railway line towards the horizon, seen from a height above the track; the eye may have gone aside.
+fn rails(framebuffer: &mut Framebuffer, knobs: &Knobs) {
+    let (height, aside) = (knobs.number("height"), knobs.number("aside"));
+    let project = |point: DVec3| perspective(point - dvec3(aside, height, 0.0), 300.0);
     let (first, last) = (150.0, 60_000.0);
 
     // Sleepers at equal distances, and poles beside the track.
     for i in 0..120 {
         let z = first + 90.0 * f64::from(i);
-        segment(
-            framebuffer,
-            project,
-            dvec3(-140.0, -120.0, z),
-            dvec3(140.0, -120.0, z),
-            Color::rgb(130, 85, 50),
-        );
+        segment(framebuffer, project, dvec3(-140.0, 0.0, z), dvec3(140.0, 0.0, z), Color::rgb(130, 85, 50));
         if i % 4 == 2 {
-            segment(framebuffer, project, dvec3(260.0, -120.0, z), dvec3(260.0, 110.0, z), Color::gray(150));
+            segment(framebuffer, project, dvec3(260.0, 0.0, z), dvec3(260.0, 230.0, z), Color::gray(150));
         }
     }
 
     // What is parallel to the track: two rails, and the wire along the poles.
-    let [left, right, wire] = [(-100.0, -120.0), (100.0, -120.0), (260.0, 110.0)];
+    let [left, right, wire] = [(-100.0, 0.0), (100.0, 0.0), (260.0, 230.0)];
     for (x, y) in [left, right, wire] {
         segment(framebuffer, project, dvec3(x, y, first), dvec3(x, y, last), Color::rgb(210, 220, 230));
     }

@@ -20,7 +20,7 @@ fn values(variant: &Variant, knob: &Knob) -> Vec<Value> {
     match (knob.kind, knob.default()) {
         (Kind::Point(_), Value::Point(point)) => {
             let corners = [[0.0, 0.0], [width, 0.0], [0.0, height], [width, height]];
-            let moved = Value::Point(point + glam::dvec2(31.0, 17.0));
+            let moved = Value::Point((point + glam::dvec2(31.0, 17.0)).min(glam::dvec2(width, height)));
             corners.iter().map(|&corner| Value::Point(corner.into())).chain([moved]).collect()
         }
         (Kind::Color(_), _) => [Color::BLACK, Color::WHITE].map(Value::Color).to_vec(),

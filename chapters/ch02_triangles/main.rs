@@ -19,45 +19,49 @@ pub(crate) const CHAPTER: Chapter = Chapter {
     name: "ch02_triangles",
     question: "Which pixels belong to a triangle?",
     variants: &[
-        Variant::new(
+        Variant::with_knobs(
             "split",
             scanlines::split_in_two,
+            scanlines::SPLIT,
             "the two halves, and the new point P′ on the long edge at the height of the middle vertex",
         )
         .source("section 2.2, Figure 2-3"),
-        Variant::new("flat", scanlines::flat, "one triangle in one color").source("section 2.2"),
-        Variant::new(
+        Variant::with_knobs("flat", scanlines::flat, scanlines::FLAT, "one triangle in one color").source("section 2.2"),
+        Variant::with_knobs(
             "overshoot",
             scanlines::overshoot,
+            scanlines::TREE,
             "rows that shoot out of the tree wherever an edge is nearly level",
         )
         .source("section 2.2, Figure 2-4")
         .size(320, 320)
         .remedied_by("clamped"),
-        Variant::new(
+        Variant::with_knobs(
             "clamped",
             scanlines::clamped,
+            scanlines::TREE,
             "the same tree with x kept between the ends of its edge: nothing outside",
         )
         .source("section 2.2")
         .size(320, 320),
-        Variant::new(
+        Variant::with_knobs(
             "shared-edge",
             edges::shared_edge,
+            edges::HEXAGON,
             "six triangles added up: yellow and red pixels are drawn twice or more, along every seam",
         )
         .remedied_by("top-left"),
-        Variant::new("top-left", edges::top_left, "the same six triangles by edge functions and the top-left rule: each pixel is drawn once, and there is no hole"),
-        Variant::new("bounding-box", edges::bounding_box, "the box around a triangle: outside, the tint says which edge has the pixel on its wrong side; where none has is the triangle")
+        Variant::with_knobs("top-left", edges::top_left, edges::HEXAGON, "the same six triangles by edge functions and the top-left rule: each pixel is drawn once, and there is no hole"),
+        Variant::with_knobs("bounding-box", edges::bounding_box, edges::BOUNDING_BOX, "the box around a triangle: outside, the tint says which edge has the pixel on its wrong side; where none has is the triangle")
             .source("second, third and fourth note"),
-        Variant::new("one-sample", samples::one_sample, "one sample in the middle of each pixel: stairs along the edges, a broken line where triangles pierce each other, and a false pattern where stripes are narrower than pixels")
+        Variant::with_knobs("one-sample", samples::one_sample, samples::SCENE, "one sample in the middle of each pixel: stairs along the edges, a broken line where triangles pierce each other, and a false pattern where stripes are narrower than pixels")
         .size(560, 420),
-        Variant::new("supersampled", samples::supersampled, "2×2 samples a pixel, each with its own color and depth, averaged: three shades along every edge; the stripes become an uneven gray")
+        Variant::with_knobs("supersampled", samples::supersampled, samples::SCENE, "2×2 samples a pixel, each with its own color and depth, averaged: three shades along every edge; the stripes become an uneven gray")
         .size(560, 420)
             .source("fourth note"),
-        Variant::new("supersampled-16", samples::supersampled_16, "4×4 samples a pixel: smoother still; of the stripes' false pattern a faint rest is left")
+        Variant::with_knobs("supersampled-16", samples::supersampled_16, samples::SCENE, "4×4 samples a pixel: smoother still; of the stripes' false pattern a faint rest is left")
         .size(560, 420),
-        Variant::new("multisampled", samples::multisampled, "four samples a pixel for coverage and depth, one color for all of them: smooth edges, but the false pattern of the stripes is back")
+        Variant::with_knobs("multisampled", samples::multisampled, samples::SCENE, "four samples a pixel for coverage and depth, one color for all of them: smooth edges, but the false pattern of the stripes is back")
         .size(560, 420),
         Variant::of_model_in_plane("facets", scanlines::facets, ["pawn.obj", "wood.png"], "a model of flat triangles, each as bright as it faces us; those that turn their back are left out")
             .size(480, 480),

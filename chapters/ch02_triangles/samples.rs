@@ -3,7 +3,7 @@
 use glam::dvec2;
 use rasterbook::exact::edge::{Coverage, Subpixel, center};
 use rasterbook::exact::samples::{CENTER, GRID_2X2, GRID_4X4, Pattern, ROTATED_4, Samples};
-use rasterbook::figure::picture;
+use rasterbook::figure::{Knob, Knobs, picture};
 use rasterbook::{Color, Framebuffer};
 
 /// A triangle that lies aslant in space: x and y on the screen, and a depth; how it is painted.
@@ -61,9 +61,18 @@ fn draw(samples: &mut Samples<'_>, patch: &Patch, shading: Shading) {
 }
 // ANCHOR_END: draw_samples
 
+pub(super) const SCENE: &[Knob] = &[Knob::number(
+    "shift",
+    0.0,
+    [0.0, 1.0],
+    "pixels",
+    "with one sample the dots of the spokes jump about, with more samples the spokes glide",
+)];
+
 // ANCHOR: samples_scene
-/// A blue triangle and an orange one that pierce each other, narrow stripes, and thin spokes.
-fn scene(framebuffer: &mut Framebuffer, pattern: &Pattern, shading: Shading) {
+/// A blue triangle and an orange one that pierce each other, narrow stripes, and thin spokes; all of them are
+/// shifted to the right by a part of a pixel.
+fn scene(framebuffer: &mut Framebuffer, pattern: &Pattern, shading: Shading, shift: f64) {
     let (blue, orange) = (Color::rgb(70, 120, 220), Color::rgb(240, 150, 50));
     let (light, dark) = (Color::rgb(230, 230, 220), Color::rgb(30, 40, 50));
     let mut patches = vec![
@@ -86,6 +95,7 @@ fn scene(framebuffer: &mut Framebuffer, pattern: &Pattern, shading: Shading) {
         let vertices = [tip, root - aside, root + aside].map(|point| [point.x, point.y, 1.0]);
         patches.push(Patch { vertices, paint: Paint::Plain(light) });
     }
+    patches.iter_mut().flat_map(|patch| &mut patch.vertices).for_each(|vertex| vertex[0] += shift);
     picture::draw_enlarged(framebuffer, (80, 60), |screen| {
         let mut samples = Samples::like(screen, pattern);
         for patch in &patches {
@@ -97,21 +107,21 @@ fn scene(framebuffer: &mut Framebuffer, pattern: &Pattern, shading: Shading) {
 // ANCHOR_END: samples_scene
 
 /// One sample in the middle.
-pub(super) fn one_sample(framebuffer: &mut Framebuffer) {
-    scene(framebuffer, &CENTER, Shading::PerPixel);
+pub(super) fn one_sample(framebuffer: &mut Framebuffer, knobs: &Knobs) {
+    scene(framebuffer, &CENTER, Shading::PerPixel, knobs.number("shift"));
 }
 
 /// 2×2 samples.
-pub(super) fn supersampled(framebuffer: &mut Framebuffer) {
-    scene(framebuffer, &GRID_2X2, Shading::PerSample);
+pub(super) fn supersampled(framebuffer: &mut Framebuffer, knobs: &Knobs) {
+    scene(framebuffer, &GRID_2X2, Shading::PerSample, knobs.number("shift"));
 }
 
 /// 4×4 samples.
-pub(super) fn supersampled_16(framebuffer: &mut Framebuffer) {
-    scene(framebuffer, &GRID_4X4, Shading::PerSample);
+pub(super) fn supersampled_16(framebuffer: &mut Framebuffer, knobs: &Knobs) {
+    scene(framebuffer, &GRID_4X4, Shading::PerSample, knobs.number("shift"));
 }
 
 /// Four samples, one color.
-pub(super) fn multisampled(framebuffer: &mut Framebuffer) {
-    scene(framebuffer, &ROTATED_4, Shading::PerPixel);
+pub(super) fn multisampled(framebuffer: &mut Framebuffer, knobs: &Knobs) {
+    scene(framebuffer, &ROTATED_4, Shading::PerPixel, knobs.number("shift"));
 }

@@ -1,7 +1,7 @@
 //! Triangles by rows: split at the middle vertex, walk up both sides, fill what lies between.
 
 use glam::{DVec2, DVec3, dvec2};
-use rasterbook::figure::{Fit, Subject};
+use rasterbook::figure::{Fit, Knob, Knobs, Subject};
 use rasterbook::scanline::{EdgeWalk, spans, split};
 use rasterbook::{Color, Framebuffer};
 
@@ -16,24 +16,45 @@ fn fill(framebuffer: &mut Framebuffer, triangle: [DVec2; 3], edges: EdgeWalk, co
 }
 // ANCHOR_END: fill
 
-/// Three points of the screen.
-pub(super) fn triangle(vertices: [(f64, f64); 3]) -> [DVec2; 3] {
-    vertices.map(DVec2::from)
+/// The book's triangle.
+pub(super) const FLAT: &[Knob] = &[
+    Knob::point(
+        "a",
+        [100.0, 0.0],
+        "bring it to the line from b to c: the triangle gets narrow, then it is gone",
+    ),
+    Knob::point("b", [100.0, 300.0], "bring it below c: the order of the vertices does not matter"),
+    Knob::point(
+        "c",
+        [300.0, 0.0],
+        "move it by parts of a pixel: a row ends with the pixel in which its end lies",
+    ),
+];
+
+/// The triangle of three knobs.
+pub(super) fn flat(framebuffer: &mut Framebuffer, knobs: &Knobs) {
+    let fit = Fit::new(framebuffer.rect(), [640.0, 480.0]);
+    let triangle = ["a", "b", "c"].map(|name| fit.at(knobs.point(name)));
+    fill(framebuffer, triangle, EdgeWalk::Clamped, Color::RED);
 }
 
-/// The book's triangle.
-pub(super) fn flat(framebuffer: &mut Framebuffer) {
-    let fit = Fit::new(framebuffer.rect(), [640.0, 480.0]);
-    let triangle = triangle([(100.0, 0.0), (100.0, 300.0), (300.0, 0.0)]);
-    fill(framebuffer, triangle.map(|vertex| fit.at(vertex)), EdgeWalk::Clamped, Color::RED);
-}
+pub(super) const SPLIT: &[Knob] = &[
+    Knob::point(
+        "a",
+        [430.0, 40.0],
+        "raise it above b: it is now the middle vertex, and the cut goes through it",
+    ),
+    Knob::point("b", [90.0, 190.0], "the cut has its height, and P′ slides along the opposite edge"),
+    Knob::point("c", [540.0, 440.0], "lower it to the height of b: the upper half vanishes"),
+];
 
 // ANCHOR: split_in_two
 /// The halves in two colors; the vertices and P′ marked.
-pub(super) fn split_in_two(framebuffer: &mut Framebuffer) {
+pub(super) fn split_in_two(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     let fit = Fit::new(framebuffer.rect(), [640.0, 480.0]);
-    let triangle = triangle([(430.0, 40.0), (90.0, 190.0), (540.0, 440.0)]).map(|vertex| fit.at(vertex));
-    let split = split(triangle).expect("a triangle with area");
+    let triangle = ["a", "b", "c"].map(|name| fit.at(knobs.point(name)));
+    // A triangle without area has no halves.
+    let Some(split) = split(triangle) else { return };
     let halves = [(split.lower, Color::rgb(230, 120, 40)), (split.upper, Color::rgb(50, 110, 210))];
     for (half, color) in halves {
         half.spans(EdgeWalk::Clamped, framebuffer.scissor(), |span| {
@@ -50,29 +71,37 @@ pub(super) fn split_in_two(framebuffer: &mut Framebuffer) {
 }
 // ANCHOR_END: split_in_two
 
+pub(super) const TREE: &[Knob] = &[Knob::number(
+    "tilt",
+    0.001,
+    [0.0, 1.0],
+    "pixels",
+    "without the clamp rows shoot out, the farther the smaller it is; at 0 and from 0.5 on none does",
+)];
+
 /// The tree with x free to leave its edges.
-pub(super) fn overshoot(framebuffer: &mut Framebuffer) {
-    tree(framebuffer, EdgeWalk::Unclamped);
+pub(super) fn overshoot(framebuffer: &mut Framebuffer, knobs: &Knobs) {
+    tree(framebuffer, EdgeWalk::Unclamped, knobs.number("tilt"));
 }
 
 /// The tree with x kept between the ends of its edges.
-pub(super) fn clamped(framebuffer: &mut Framebuffer) {
-    tree(framebuffer, EdgeWalk::Clamped);
+pub(super) fn clamped(framebuffer: &mut Framebuffer, knobs: &Knobs) {
+    tree(framebuffer, EdgeWalk::Clamped, knobs.number("tilt"));
 }
 
 // ANCHOR: tree
-/// A fir tree. Each layer's base is level but for two thousandths of a pixel, so that one step of y moves x by 30,000 to
-/// 100,000, in a larger picture by more.
-fn tree(framebuffer: &mut Framebuffer, edges: EdgeWalk) {
+/// A fir tree. Each layer's base is level but for twice the tilt. If that is two thousandths of a pixel, one
+/// step of y moves x by 30,000 to 100,000, in a larger picture by more.
+fn tree(framebuffer: &mut Framebuffer, edges: EdgeWalk, tilt: f64) {
     let fit = Fit::new(framebuffer.rect(), [320.0, 320.0]);
     for i in 0..6 {
         let layer = f64::from(i);
         let (base, half_width) = (60.0 + 36.0 * layer, 100.0 - 14.0 * layer);
         let [left, right, top] =
-            triangle([(160.0 - half_width, base), (160.0 + half_width, base), (160.0, base + 70.0)])
-                .map(|vertex| fit.at(vertex));
+            [(160.0 - half_width, base), (160.0 + half_width, base), (160.0, base + 70.0)]
+                .map(|vertex| fit.at(vertex.into()));
         // The base is on a whole row, whatever the size; its lower end is now on the left, now on the right.
-        let (base, tilt) = (left.y.round(), if i % 2 == 0 { 0.001 } else { -0.001 });
+        let (base, tilt) = (left.y.round(), if i % 2 == 0 { tilt } else { -tilt });
         let triangle = [dvec2(left.x, base - tilt), dvec2(right.x, base + tilt), top];
         fill(framebuffer, triangle, edges, Color::rgb(20, 90 + 22 * i, 50));
     }

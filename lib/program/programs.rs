@@ -55,7 +55,7 @@ pub const PROGRAMS: [Program; 11] = [
     Program {
         name: "ch03_barycentric",
         question: "The corners have values: which value has a pixel between them?",
-        variants: &["weights", "rgb", "gray", "texture", "spikes", "limited-edges", "limited"],
+        variants: &["weights", "areas", "rgb", "gray", "texture", "spikes", "limited-edges", "limited"],
         has_model: false,
         has_texture: false,
     },
