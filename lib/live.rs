@@ -12,7 +12,7 @@
 use glam::{DVec2, dvec2};
 
 use crate::color::Color;
-use crate::figure::picture::{Zoom, blocks, difference};
+use crate::figure::picture::{Zoom, blocks, difference, paste};
 use crate::figure::{Chapter, Fit, Given, Knob, Mistake, RasterizerChoice, Scene, Value, Variant};
 use crate::files::FileError;
 use crate::framebuffer::Framebuffer;
@@ -267,12 +267,18 @@ impl<'a> Live<'a> {
         }
     }
 
-    fn magnify(&mut self, notches: i32, pixel: Pixel) {
-        if let Some(center) = self.pixel_at(pixel) {
-            self.center = center;
-        }
+    /// What is under the pointer stays there.
+    fn magnify(&mut self, notches: i32, pointer: Pixel) {
+        let Some(pixel) = self.pixel_at(pointer) else {
+            return;
+        };
         let last = FACTORS.len() as i32 - 1;
         self.magnification = (self.magnification as i32).saturating_add(notches).clamp(0, last) as usize;
+        let (part, factor) = self.part();
+        let center =
+            |pixel: i32, pointer: i32, count: usize| pixel - pointer / factor as i32 + count as i32 / 2;
+        self.center =
+            (center(pixel.0, pointer.0, part.columns().len()), center(pixel.1, pointer.1, part.rows().len()));
     }
 
     fn press(&mut self, pixel: Pixel) {
@@ -349,7 +355,10 @@ impl<'a> Live<'a> {
     /// The part of the picture that is shown, and how large its pixels are.
     fn part(&self) -> (Rect, u32) {
         let factor = FACTORS[self.magnification];
-        (Zoom { factor, center: Some(self.center) }.part_within(self.whole(), self.scene.size), factor)
+        let (width, height) = self.scene.size;
+        // At the upper and the right border pixels may be cut.
+        let room = (width + factor - 1, height + factor - 1);
+        (Zoom { factor, center: Some(self.center) }.part_within(self.whole(), room), factor)
     }
 
     /// Which pixel of the scene's picture a pixel of the picture that is shown belongs to; `None` outside of it.
@@ -382,13 +391,17 @@ impl<'a> Live<'a> {
         }
     }
 
-    /// What is shown: the picture, or a part of it with large pixels and a grid.
+    /// What is shown: the picture, or a part of it with large pixels and a grid, which has the same size.
     #[must_use]
     pub fn picture(&self) -> Framebuffer {
         let whole = self.whole_picture();
         match self.part() {
             (_, 1) => whole,
-            (part, factor) => blocks(&whole, part, factor),
+            (part, factor) => {
+                let mut shown = Framebuffer::new(whole.width(), whole.height());
+                paste(&mut shown, &blocks(&whole, part, factor), 0, 0);
+                shown
+            }
         }
     }
 
@@ -500,7 +513,7 @@ mod tests {
 
     #[test]
     fn knobs_turn_and_come_back() {
-        let turned = play(live(), &[Event::Turn(5), Event::NextKnob(1), Event::Turn(3)]);
+        let turned = play(live(), &[Event::Turn(10), Event::NextKnob(1), Event::Turn(3)]);
         assert_eq!(seen(&turned.picture()), (120, Some((8, 6))));
         assert_eq!(turned.status(), "wrong · dot = 7,6");
         assert_eq!(seen(&play(turned, &[Event::Reset]).picture()), (100, Some((5, 6))));
@@ -524,7 +537,7 @@ mod tests {
 
     #[test]
     fn views_are_the_remedy_the_difference_and_the_overdraw() {
-        let shown = |view| play(live(), &[Event::Turn(5), Event::Show(view)]);
+        let shown = |view| play(live(), &[Event::Turn(10), Event::Show(view)]);
         assert_eq!(seen(&shown(View::Remedy).picture()), (120, Some((4, 6))), "with the same knobs");
         assert_eq!(shown(View::Remedy).status(), "right: remedy of wrong · level = 120");
         let marked = shown(View::Difference).picture();
@@ -540,7 +553,7 @@ mod tests {
 
     #[test]
     fn variants_take_over_knobs_and_an_asked_size() {
-        let other = play(live(), &[Event::Turn(5), Event::NextVariant(1)]);
+        let other = play(live(), &[Event::Turn(10), Event::NextVariant(1)]);
         assert_eq!(seen(&other.picture()), (120, Some((4, 6))));
         assert_eq!(play(other, &[Event::NextVariant(-2)]).scene().variant.name, "moving");
         assert_eq!(play(live(), &[Event::Variant(7)]).scene().variant.name, "wrong", "there is no eighth");
@@ -568,9 +581,10 @@ mod tests {
 
     #[test]
     fn single_pixels_are_shown_and_found() {
-        let near = play(live(), &[Event::Magnify(3, (5, 6))]);
+        let near = play(live(), &[Event::Magnify(1, (5, 6)), Event::Magnify(2, (5, 6))]);
+        assert_eq!(near.pixel_at((5, 6)), Some((5, 6)), "what is under the pointer stays there");
         let picture = near.picture();
-        assert_eq!((picture.width(), picture.height()), (40, 28), "4× as large, whole pixels only");
+        assert_eq!((picture.width(), picture.height()), (40, 30), "4× as large, cut at the upper border");
         let (_, white) = seen(&picture);
         assert_eq!(near.pixel_at(white.expect("in the part that is shown")), Some((5, 6)));
         assert_eq!(near.pixel_at((40, 0)), None);

@@ -144,15 +144,15 @@ impl Knob {
         }
     }
 
-    /// The value that is so many steps of a key or a wheel from `value`, kept in range. A number has 60 steps, a
-    /// point moves to the right by a pixel, a color becomes brighter by a 16th; choices and switches go round.
+    /// The value that is so many steps of a key from `value`, kept in range. A number has at least 60 round steps, a point
+    /// moves to the right by a pixel, a color becomes brighter by a 16th; choices and switches go round.
     #[must_use]
     pub fn stepped(&self, value: Value, steps: i32) -> Value {
         match (self.kind, value) {
             (Kind::Number { range: [low, high], .. }, Value::Number(value)) => {
-                let stepped = value + (high - low) / 60.0 * f64::from(steps);
+                let stepped = value + round_step((high - low) / 60.0) * f64::from(steps);
                 // Without the dust that adding leaves: 0.30000000000000004.
-                Value::Number(((stepped * 1e6).round() / 1e6).clamp(low, high))
+                Value::Number(((stepped * 1e9).round() / 1e9).clamp(low, high))
             }
             (Kind::Whole { range: [low, high], .. }, Value::Whole(value)) => {
                 Value::Whole(value.saturating_add(steps).clamp(low, high))
@@ -231,6 +231,12 @@ impl Knob {
             Kind::Color(_) => parse_color(text).map(Value::Color),
         }
     }
+}
+
+/// The largest of 1, 2 and 5 times a power of ten that is not larger than `most`.
+fn round_step(most: f64) -> f64 {
+    let ten = libm::pow(10.0, libm::log10(most).floor());
+    [5.0, 2.0, 1.0].map(|times| times * ten).into_iter().find(|step| *step <= most).unwrap_or(ten)
 }
 
 /// The nearest point of the picture.
@@ -511,7 +517,9 @@ mod tests {
     #[test]
     fn steps_stay_in_range_or_go_round() {
         let stepped = |index: usize, steps| KNOBS[index].stepped(KNOBS[index].default(), steps);
-        assert_eq!(stepped(0, 3), Value::Number(34.0));
+        assert_eq!(stepped(0, 3), Value::Number(33.0));
+        let steps = [80.0, 360.0, 1.0, 120.0, 59.0].map(|range: f64| round_step(range / 60.0));
+        assert_eq!(steps, [1.0, 5.0, 0.01, 2.0, 0.5]);
         assert_eq!(stepped(0, 1000), Value::Number(80.0));
         assert_eq!(stepped(1, -9), Value::Whole(1));
         assert_eq!(stepped(2, 1), Value::Choice(1));

@@ -279,17 +279,17 @@ impl Viewer<'_> {
             self.shown.slowest = self.shown.slowest.max(self.shown.took);
             self.shown.size = (0, 0);
         }
-        self.title(window);
         let Shown { picture: Some(picture), buffer, size: before, .. } = &mut self.shown else {
             return Ok(());
         };
-        if *before == size {
-            window.update();
-            return Ok(());
+        if *before != size {
+            *before = size;
+            lay_out(picture, size, buffer);
         }
-        *before = size;
-        lay_out(picture, size, buffer);
-        window.update_with_buffer(buffer, size.0, size.1).map_err(no_window)
+        // Every time: what another window has covered is not kept.
+        window.update_with_buffer(buffer, size.0, size.1).map_err(no_window)?;
+        self.title(window);
+        Ok(())
     }
 
     fn title(&mut self, window: &mut Window) {
