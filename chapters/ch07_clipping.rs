@@ -12,7 +12,7 @@ use arrayvec::ArrayVec;
 use glam::{DVec4, dvec2, dvec3, dvec4};
 use rasterbook::clip::{ClipTest, ClipVolume, NdcVertex, Plane, clip_polygon, fan};
 use rasterbook::depth::DepthEncoding;
-use rasterbook::figure::{Chapter, Fit, Variant};
+use rasterbook::figure::{Chapter, Fit, Knob, Knobs, Variant};
 use rasterbook::interpolate::{Projected, ScreenVertex};
 use rasterbook::line::{StepAxis, dda};
 use rasterbook::texture::{AddressMode, Texture};
@@ -23,18 +23,57 @@ pub(crate) const CHAPTER: Chapter = Chapter {
     name: "ch07_clipping",
     question: "What if a triangle reaches behind the eye?",
     variants: &[
-        Variant::new("in-front", in_front, "the same floor, clipped at the near plane: it ends at the horizon, and below the picture's lower edge")
+        Variant::with_knobs("in-front", in_front, &[BEGIN, CUT], "the same floor, clipped at the near plane: it ends at the horizon, and below the picture's lower edge")
             .source("section 7.3, Figure 7-5"),
-        Variant::new("near", near, "two crossing walls, cut off at ω = 15: compare with 'reciprocal', their near ends are gone")
+        Variant::with_knobs("near", near, &[WALL_CUT, WALL], "two crossing walls, cut off at ω = 15: compare with 'reciprocal', their near ends are gone")
             .source("section 7.4, Figure 7-10"),
-        Variant::new("reciprocal", reciprocal, "two crossing walls with the depth −1/z: they meet in a straight, upright line")
+        Variant::with_knobs("reciprocal", reciprocal, &[WALL], "two crossing walls with the depth −1/z: they meet in a straight, upright line")
             .source("section 7.2"),
-        Variant::new("behind", behind, "a floor that begins behind the eye, not clipped: what is behind us turns up in the sky, upside down")
+        Variant::with_knobs("behind", behind, &[BEGIN], "a floor that begins behind the eye, not clipped: what is behind us turns up in the sky, upside down")
             .source("section 7.3, Figure 7-5").remedied_by("in-front"),
-        Variant::new("polygon", polygon, "left: a polygon and a line that cuts it; right: what is left. Green: where the outline enters, red: where it leaves")
+        Variant::with_knobs("polygon", polygon, LINE, "left: a polygon and a line that cuts it; right: what is left. Green: where the outline enters, red: where it leaves")
             .source("section 7.4, Figure 7-6"),
     ],
 };
+
+const BEGIN: Knob = Knob::number(
+    "begin",
+    -6.0,
+    [-20.0, 8.0],
+    "",
+    "where the floor begins: as soon as that is in front of the eye, above 0, 'behind' looks like 'in-front'",
+);
+const CUT: Knob = Knob::number(
+    "cut",
+    0.5,
+    [0.05, 8.0],
+    "",
+    "the cut goes away from the eye: from 1.25 on the floor leaves the lower border",
+);
+const WALL_CUT: Knob = Knob::number(
+    "cut",
+    15.0,
+    [5.0, 100.0],
+    "",
+    "the cut goes away from the eye: the wall's near end moves to the right, beyond 55 the other wall is gone",
+);
+const WALL: Knob = Knob::number(
+    "distance",
+    55.0,
+    [20.0, 100.0],
+    "",
+    "the wall that faces us goes away: the line in which they meet moves to the right and stays upright",
+);
+const LINE: &[Knob] = &[
+    Knob::number(
+        "place",
+        190.0,
+        [20.0, 270.0],
+        "",
+        "the line moves to the right: the points of the cut come and go in pairs of red and green",
+    ),
+    Knob::number("slope", 0.05, [-0.2, 0.2], "", "the line tilts: each point of the cut stays on an edge"),
+];
 
 /// The depth that the buffer is cleared to: larger than −1/z of anything drawn.
 const FAR_AWAY: f64 = 1000.0;
@@ -73,8 +112,8 @@ fn vertex([x, y, z]: [f64; 3], near: f64, uv: [f64; 2]) -> ClipVertex<2> {
 // ANCHOR_END: vertex
 
 // ANCHOR: walls
-/// The book's scene: a wall that runs away from us, and one at the distance 55 that faces us.
-fn walls(framebuffer: &mut Framebuffer, volume: ClipVolume) {
+/// The book's scene: a wall that runs away from us, and one at the distance 55 (or another) that faces us.
+fn walls(framebuffer: &mut Framebuffer, distance: f64, volume: ClipVolume) {
     let corner = |x: f64, y: f64, z: f64| vertex([x, y, z], 9.0, [x / 1280.0, y / 480.0]);
     let mut target = Target::like(framebuffer);
     target.clear(Color::BLACK, FAR_AWAY);
@@ -82,8 +121,8 @@ fn walls(framebuffer: &mut Framebuffer, volume: ClipVolume) {
     for triangle in [
         [corner(0.0, 0.0, 10.0), corner(0.0, 480.0, 10.0), corner(1280.0, 0.0, 100.0)],
         [corner(1280.0, 0.0, 100.0), corner(0.0, 480.0, 10.0), corner(1280.0, 480.0, 100.0)],
-        [corner(0.0, 0.0, 55.0), corner(0.0, 480.0, 55.0), corner(1280.0, 0.0, 55.0)],
-        [corner(1280.0, 480.0, 55.0), corner(0.0, 480.0, 55.0), corner(1280.0, 0.0, 55.0)],
+        [corner(0.0, 0.0, distance), corner(0.0, 480.0, distance), corner(1280.0, 0.0, distance)],
+        [corner(1280.0, 480.0, distance), corner(0.0, 480.0, distance), corner(1280.0, 0.0, distance)],
     ] {
         let texel = |uv| Color::truncated(texture.nearest(uv, AddressMode::Clamp));
         draw(&mut target, triangle, volume, |divided| divided.position.truncate(), texel);
@@ -92,21 +131,21 @@ fn walls(framebuffer: &mut Framebuffer, volume: ClipVolume) {
 }
 
 /// Nothing needs to be cut away: everything is in front.
-fn reciprocal(framebuffer: &mut Framebuffer) {
-    walls(framebuffer, ClipVolume::Everything);
+fn reciprocal(framebuffer: &mut Framebuffer, knobs: &Knobs) {
+    walls(framebuffer, knobs.number("distance"), ClipVolume::Everything);
 }
 
-/// Cut off at ω = 15.
-fn near(framebuffer: &mut Framebuffer) {
-    walls(framebuffer, ClipVolume::InFront(15.0));
+/// Cut off at ω = 15, unless the knob says otherwise.
+fn near(framebuffer: &mut Framebuffer, knobs: &Knobs) {
+    walls(framebuffer, knobs.number("distance"), ClipVolume::InFront(knobs.number("cut")));
 }
 // ANCHOR_END: walls
 
 // ANCHOR: behind
-/// A checkered floor from 6 behind the eye to 60 before it.
-fn floor(framebuffer: &mut Framebuffer, volume: ClipVolume) {
+/// A checkered floor from 6 behind the eye, begin = −6, to 60 before it.
+fn floor(framebuffer: &mut Framebuffer, begin: f64, volume: ClipVolume) {
     let corner = |x: f64, z: f64| vertex([x, -1.0, z], 300.0, [x / 2.0, z / 2.0]);
-    let [a, b] = [corner(-4.0, -6.0), corner(4.0, -6.0)];
+    let [a, b] = [corner(-4.0, begin), corner(4.0, begin)];
     let [c, d] = [corner(4.0, 60.0), corner(-4.0, 60.0)];
     let texture = Texture::checkerboard(Color::rgb(60, 80, 110), Color::rgb(230, 225, 200));
     let texel = |uv| Color::truncated(texture.nearest(uv, AddressMode::Repeat));
@@ -121,19 +160,20 @@ fn floor(framebuffer: &mut Framebuffer, volume: ClipVolume) {
 }
 
 /// Not clipped: the divide mirrors what is behind the eye.
-fn behind(framebuffer: &mut Framebuffer) {
-    floor(framebuffer, ClipVolume::Everything);
+fn behind(framebuffer: &mut Framebuffer, knobs: &Knobs) {
+    floor(framebuffer, knobs.number("begin"), ClipVolume::Everything);
 }
 
 /// Clipped a little before the eye.
-fn in_front(framebuffer: &mut Framebuffer) {
-    floor(framebuffer, ClipVolume::InFront(0.5));
+fn in_front(framebuffer: &mut Framebuffer, knobs: &Knobs) {
+    floor(framebuffer, knobs.number("begin"), ClipVolume::InFront(knobs.number("cut")));
 }
 // ANCHOR_END: behind
 
 // ANCHOR: polygon
 /// A polygon that a line crosses four times, and the part of it on one side.
-fn polygon(framebuffer: &mut Framebuffer) {
+fn polygon(framebuffer: &mut Framebuffer, knobs: &Knobs) {
+    let (place, slope) = (knobs.number("place"), knobs.number("slope"));
     let corners = [
         (40.0, 90.0),
         (270.0, 60.0),
@@ -144,8 +184,8 @@ fn polygon(framebuffer: &mut Framebuffer) {
         (70.0, 380.0),
     ];
     let outline = corners.map(|(x, y)| ClipVertex { position: dvec4(x, y, 0.0, 1.0), varyings: [] });
-    // Kept is what lies left of the line x = 190 + y / 20; a plane before the divide, with ω = 1, is a line.
-    let plane = Plane::homogeneous(dvec4(-1.0, 0.05, 0.0, 190.0));
+    // Kept is what lies left of the line x = place + slope · y; a plane before the divide, with ω = 1, is a line.
+    let plane = Plane::homogeneous(dvec4(-1.0, slope, 0.0, place));
     let kept: ArrayVec<ClipVertex<0>, 16> = clip_polygon(&outline, &plane, ClipTest::BeforeDivide);
 
     let fit = Fit::new(framebuffer.rect(), [640.0, 480.0]);
@@ -155,7 +195,7 @@ fn polygon(framebuffer: &mut Framebuffer) {
     };
     let right = dvec4(330.0, 0.0, 0.0, 0.0);
     for shift in [DVec4::ZERO, right] {
-        let [low, high] = [dvec4(190.0, 0.0, 0.0, 1.0), dvec4(214.0, 480.0, 0.0, 1.0)];
+        let [low, high] = [0.0, 480.0].map(|y| dvec4(place + slope * y, y, 0.0, 1.0));
         line(framebuffer, low + shift, high + shift, Color::rgb(255, 200, 60));
     }
     for (vertices, shift, color) in
@@ -167,9 +207,9 @@ fn polygon(framebuffer: &mut Framebuffer) {
         }
     }
 
-    // An outline leaves where the vertex before the cut was inside, and enters where the one after it is.
+    // An outline enters where the vertex after the cut is off the line, and inside.
     for (i, cut) in kept.iter().enumerate().filter(|(_, vertex)| !outline.contains(vertex)) {
-        let enters = outline.contains(&kept[(i + 1) % kept.len()]);
+        let enters = plane.signed_distance(kept[(i + 1) % kept.len()].position) > 1e-9;
         let color = if enters { Color::rgb(60, 220, 90) } else { Color::rgb(240, 60, 50) };
         for shift in [DVec4::ZERO, right] {
             framebuffer.fill(fit.mark(at(cut.position + shift), 4.0), color);

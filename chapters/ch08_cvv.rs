@@ -10,7 +10,7 @@ use std::process::ExitCode;
 
 use glam::{DVec2, DVec3, DVec4, dvec2, dvec3};
 use rasterbook::clip::{ClipTest, ClipVolume, DepthRange, NdcVertex, Plane, clip_triangle, fan};
-use rasterbook::figure::{Chapter, Fit, Variant};
+use rasterbook::figure::{Chapter, Fit, Knob, Knobs, Variant};
 use rasterbook::interpolate::{Projected, ScreenVertex};
 use rasterbook::line::{StepAxis, dda};
 use rasterbook::texture::{AddressMode, Texture};
@@ -21,17 +21,17 @@ pub(crate) const CHAPTER: Chapter = Chapter {
     name: "ch08_cvv",
     question: "What of the world gets into the picture?",
     variants: &[
-        Variant::new("clipped", clipped, "a triangle that is larger than the view, one corner nearer than the near plane: cut off at the borders of the picture")
+        Variant::with_knobs("clipped", clipped, BORDERS, "a triangle that is larger than the view, one corner nearer than the near plane: cut off at the borders of the picture")
             .source("section 8.3, Figure 8-9"),
-        Variant::new("ndc", ndc, "a triangle that fits: the frustum's borders become the borders of the picture").source("section 8.2, Figure 8-6"),
-        Variant::new("planes", planes, "the polygon before clipping and after each plane: left, right, bottom, top, near, far; the square is the view")
+        Variant::with_knobs("ndc", ndc, BORDERS, "a triangle that fits: the frustum's borders become the borders of the picture").source("section 8.2, Figure 8-6"),
+        Variant::with_knobs("planes", planes, PLANES, "the polygon before clipping and after each plane: left, right, bottom, top, near, far; the square is the view")
             .source("section 8.3, Table 8-1").size(800, 400),
-        Variant::new("frustum", frustum, "left: 35 points in the view volume from above, the eye at the bottom; right: the same in NDC. Equal steps in depth crowd together far away")
+        Variant::with_knobs("frustum", frustum, DEPTHS, "left: 35 points in the view volume from above, the eye at the bottom; right: the same in NDC. Equal steps in depth crowd together far away")
             .source("section 8.1, Figure 8-4").size(760, 400),
-        Variant::new("divide-first", divide_first, "a floor that passes under the eye, tested after the divide: behind us the comparison turns round, and the floor is cut off far before our feet")
+        Variant::with_knobs("divide-first", divide_first, BEGIN, "a floor that passes under the eye, tested after the divide: behind us the comparison turns round, and the floor is cut off far before our feet")
             .source("section 8.3").remedied_by("clip-first"),
-        Variant::new("clip-first", clip_first, "the same floor, clipped before the divide: it comes up to the near plane, at the lower border").source("section 8.3"),
-        Variant::new("zero-to-one", zero_to_one, "Direct3D's range, 0 ≤ z ≤ ω: another projection, another near plane, the same picture as 'clipped'"),
+        Variant::with_knobs("clip-first", clip_first, BEGIN, "the same floor, clipped before the divide: it comes up to the near plane, at the lower border").source("section 8.3"),
+        Variant::with_knobs("zero-to-one", zero_to_one, BORDERS, "Direct3D's range, 0 ≤ z ≤ ω: another projection, another near plane, the same picture as 'clipped'"),
     ],
 };
 
@@ -39,6 +39,77 @@ pub(crate) const CHAPTER: Chapter = Chapter {
 const VIEW: Frustum =
     Frustum { left: -320.0, right: 320.0, bottom: -240.0, top: 240.0, near: 5.0, far: 20.0 };
 const ASPECT: f64 = 4.0 / 3.0;
+
+const BORDERS: &[Knob] = &[
+    Knob::number(
+        "left",
+        VIEW.left,
+        [-960.0, -80.0],
+        "",
+        "the left border goes outwards: more of the world is squeezed into the same picture",
+    ),
+    Knob::number(
+        "right",
+        VIEW.right,
+        [80.0, 960.0],
+        "",
+        "the right border goes outwards: what was cut off on the right comes into view",
+    ),
+    Knob::number(
+        "near",
+        VIEW.near,
+        [1.0, 8.0],
+        "",
+        "the near plane and its borders go away from the eye: the view becomes narrow, as through a telescope",
+    ),
+    Knob::number(
+        "far",
+        VIEW.far,
+        [8.5, 20.0],
+        "",
+        "the far plane comes closer: nothing changes down to 10, then what is farther away is gone",
+    ),
+];
+
+const PLANES: &[Knob] = &[
+    Knob::switch("left", true, "off: what lies beyond the left border stays from the second drawing on"),
+    Knob::switch("right", true, "off: what lies beyond the right border stays from the third drawing on"),
+    Knob::switch("bottom", true, "off: what lies below stays from the fourth drawing on"),
+    Knob::switch("top", true, "off: what lies above stays from the fifth drawing on"),
+    Knob::switch("near", true, "off: what is too near stays in the last two drawings"),
+    Knob::switch("far", true, "off: what is too far stays in the last drawing"),
+];
+
+const DEPTHS: &[Knob] = &[
+    Knob::number(
+        "near",
+        2.0,
+        [0.25, 6.0],
+        "",
+        "the near plane comes closer to the eye: in the box all rows but the first crowd together at its far end",
+    ),
+    Knob::number(
+        "far",
+        10.0,
+        [6.5, 10.5],
+        "",
+        "the far plane comes closer: the box stays, and its rows spread",
+    ),
+];
+
+const BEGIN: &[Knob] = &[Knob::number(
+    "begin",
+    -9.0,
+    [-20.0, 18.0],
+    "",
+    "where the floor begins: before the eye, too, 'divide-first' cuts in the wrong place; from 11 on nothing is cut",
+)];
+
+/// The view with some of its borders in other places.
+fn view(knobs: &Knobs) -> Frustum {
+    let [left, right, near, far] = ["left", "right", "near", "far"].map(|name| knobs.number(name));
+    Frustum { left, right, near, far, ..VIEW }
+}
 
 // ANCHOR: draw
 /// Draws a triangle from clip space: clip, divide, lay onto the screen, fill with depth test.
@@ -77,7 +148,8 @@ fn draw_all(
 // ANCHOR_END: draw
 
 /// A triangle that fits into the view.
-fn ndc(framebuffer: &mut Framebuffer) {
+fn ndc(framebuffer: &mut Framebuffer, knobs: &Knobs) {
+    let view = view(knobs);
     let corners = [
         ([-320.0, 240.0, 10.0], [0.0, 1.0]),
         ([-320.0, -240.0, 10.0], [0.0, 0.0]),
@@ -86,7 +158,7 @@ fn ndc(framebuffer: &mut Framebuffer) {
     draw_all(
         framebuffer,
         &[corners],
-        |view| VIEW.project(view),
+        |place| view.project(place),
         DepthRange::NegativeOneToOne,
         ClipTest::BeforeDivide,
     );
@@ -100,40 +172,42 @@ const LARGE: [SpaceCorner; 3] = [
 ];
 
 /// Clipped by the six planes.
-fn clipped(framebuffer: &mut Framebuffer) {
+fn clipped(framebuffer: &mut Framebuffer, knobs: &Knobs) {
+    let view = view(knobs);
     draw_all(
         framebuffer,
         &[LARGE],
-        |view| VIEW.project(view),
+        |place| view.project(place),
         DepthRange::NegativeOneToOne,
         ClipTest::BeforeDivide,
     );
 }
 
 /// The same with z from 0 to ω.
-fn zero_to_one(framebuffer: &mut Framebuffer) {
+fn zero_to_one(framebuffer: &mut Framebuffer, knobs: &Knobs) {
+    let view = view(knobs);
     draw_all(
         framebuffer,
         &[LARGE],
-        |view| VIEW.project_zero_to_one(view),
+        |place| view.project_zero_to_one(place),
         DepthRange::ZeroToOne,
         ClipTest::BeforeDivide,
     );
 }
 
 // ANCHOR: divide_first
-/// A floor of two triangles, from behind the eye to the far plane.
-const PASSING: [[SpaceCorner; 3]; 2] = {
-    let [a, b] = [([-700.0, -240.0, -9.0], [0.0, 0.0]), ([700.0, -240.0, -9.0], [1.0, 0.0])];
+/// A floor of two triangles, from behind the eye, begin = −9, to the far plane.
+fn passing(begin: f64) -> [[SpaceCorner; 3]; 2] {
+    let [a, b] = [([-700.0, -240.0, begin], [0.0, 0.0]), ([700.0, -240.0, begin], [1.0, 0.0])];
     let [c, d] = [([700.0, -240.0, 19.0], [1.0, 1.0]), ([-700.0, -240.0, 19.0], [0.0, 1.0])];
     [[a, b, c], [a, c, d]]
-};
+}
 
 /// The comparison after the divide.
-fn divide_first(framebuffer: &mut Framebuffer) {
+fn divide_first(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     draw_all(
         framebuffer,
-        &PASSING,
+        &passing(knobs.number("begin")),
         |view| VIEW.project(view),
         DepthRange::NegativeOneToOne,
         ClipTest::AfterDivide,
@@ -141,10 +215,10 @@ fn divide_first(framebuffer: &mut Framebuffer) {
 }
 
 /// The comparison before the divide.
-fn clip_first(framebuffer: &mut Framebuffer) {
+fn clip_first(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     draw_all(
         framebuffer,
-        &PASSING,
+        &passing(knobs.number("begin")),
         |view| VIEW.project(view),
         DepthRange::NegativeOneToOne,
         ClipTest::BeforeDivide,
@@ -157,13 +231,15 @@ fn draw_line(framebuffer: &mut Framebuffer, a: DVec2, b: DVec2, color: Color) {
 }
 
 // ANCHOR: plane_by_plane
-/// The polygon in NDC after no plane, one, two, … six; in each panel the view is the square in the middle.
-fn planes(framebuffer: &mut Framebuffer) {
+/// The polygon in NDC after no plane, one, two, … six; in each panel the view is the square in the middle. A plane that
+/// is switched off cuts nothing.
+fn planes(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     const PANEL: f64 = 200.0;
     framebuffer.clear(Color::gray(24));
     let fit = Fit::new(framebuffer.rect(), [4.0 * PANEL, 2.0 * PANEL]);
     let corners = [[-10_400.0, 2600.0, 90.0], [58.0, -245.0, 3.0], [820.0, 576.0, 8.0]];
     let triangle = corners.map(|view| ClipVertex { position: VIEW.project(DVec3::from(view)), varyings: [] });
+    let is_on = ["left", "right", "bottom", "top", "near", "far"].map(|name| knobs.is_on(name));
     for count in 0..=6 {
         let middle = PANEL * dvec2(0.5 + (count % 4) as f64, if count < 4 { 1.5 } else { 0.5 });
         let in_panel = |ndc: DVec2| fit.at(middle + ndc * 45.0);
@@ -173,7 +249,9 @@ fn planes(framebuffer: &mut Framebuffer) {
         for i in 0..4 {
             draw_line(framebuffer, view[i], view[(i + 1) % 4], Color::gray(110));
         }
-        let polygon = clip_triangle(triangle, &Plane::CANONICAL[..count], ClipTest::BeforeDivide);
+        let planes = Plane::CANONICAL[..count].iter().zip(is_on).filter(|(_, is_on)| *is_on);
+        let planes: Vec<Plane> = planes.map(|(plane, _)| *plane).collect();
+        let polygon = clip_triangle(triangle, &planes, ClipTest::BeforeDivide);
         for (i, vertex) in polygon.iter().enumerate() {
             let next = &polygon[(i + 1) % polygon.len()];
             draw_line(framebuffer, place(vertex), place(next), Color::rgb(110, 190, 255));
@@ -187,7 +265,7 @@ fn planes(framebuffer: &mut Framebuffer) {
 
 // ANCHOR: frustum
 /// Rows of points at equal steps of depth, from above: in camera space on the left, in NDC on the right.
-fn frustum(framebuffer: &mut Framebuffer) {
+fn frustum(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     const ROWS: [Color; 5] = [
         Color::rgb(255, 90, 80),
         Color::rgb(255, 180, 60),
@@ -195,7 +273,10 @@ fn frustum(framebuffer: &mut Framebuffer) {
         Color::rgb(100, 220, 120),
         Color::rgb(100, 160, 255),
     ];
-    let view = Frustum { left: -1.0, right: 1.0, bottom: -1.0, top: 1.0, near: 2.0, far: 10.0 };
+    let (near, far) = (knobs.number("near"), knobs.number("far"));
+    // As wide as it is far away, wherever it is cut off.
+    let right = near / 2.0;
+    let view = Frustum { left: -right, right, bottom: -right, top: right, near, far };
     let fit = Fit::new(framebuffer.rect(), [760.0, 400.0]);
     let in_camera = |p: DVec3| fit.at(dvec2(190.0, 30.0) + dvec2(p.x, p.z) * 34.0);
     let in_ndc = |p: DVec3| {
@@ -203,7 +284,7 @@ fn frustum(framebuffer: &mut Framebuffer) {
         fit.at(dvec2(570.0, 200.0) + dvec2(ndc.x, ndc.z) * 150.0)
     };
     let point = |column: i32, row: i32| {
-        let z = 2.0 + 2.0 * f64::from(row);
+        let z = near + (far - near) / 4.0 * f64::from(row);
         // The borders of the view are at x = ±z · right / near.
         dvec3(f64::from(column - 3) / 3.0 * z / 2.0, 0.0, z)
     };

@@ -8,10 +8,10 @@
 
 use std::process::ExitCode;
 
-use glam::{DVec3, dvec3};
+use glam::{DVec3, dvec2, dvec3};
 use rasterbook::area::Winding;
 use rasterbook::cull::CullMode;
-use rasterbook::figure::{Animation, Canvas, Chapter, Variant};
+use rasterbook::figure::{Animation, Canvas, Chapter, Knob, Knobs, Variant};
 use rasterbook::merge::{Blend, Merge};
 use rasterbook::swap_chain::SwapChain;
 use rasterbook::texture::{AddressMode, Texture};
@@ -22,21 +22,87 @@ pub(crate) const CHAPTER: Chapter = Chapter {
     name: "ch09_pipeline",
     question: "How is all this put together?",
     variants: &[
-        Variant::with_pipeline("blended", blended, "translucent triangles over a checkered wall: source-over on the left, where order matters; additive on the right"),
+        Variant::with_pipeline("blended", blended, "translucent triangles over a checkered wall: source-over on the left, where order matters; additive on the right").knobs(BLENDING),
         Variant::with_pipeline("vbo", vbo, "chapter 8's triangle from a vertex buffer, through the whole pipeline: the same picture").source("section 9.2"),
-        Variant::with_pipeline("cull-ccw", cull_ccw, "two triangles, the back culled: the counter-clockwise one is left, which is the picture 'vbo'").source("section 9.3"),
-        Variant::with_pipeline("cull-cw", cull_cw, "the same with clockwise as the front, the back culled: the clockwise one is left").source("section 9.3"),
-        Variant::with_pipeline("cull-none", cull_none, "the same, nothing culled: both").source("section 9.3"),
-        Variant::with_pipeline("uncleared", uncleared, "five frames of a moving triangle, nothing cleared between them: the old ones stay").source("section 9.4.1, Figure 9-8").remedied_by("cleared"),
-        Variant::with_pipeline("cleared", cleared, "the fifth of these frames, color and depth cleared before it").source("section 9.4.1"),
+        Variant::with_pipeline("cull-ccw", cull_ccw, "two triangles, the back culled: the counter-clockwise one is left, which is the picture 'vbo'").source("section 9.3").knobs(&[VERTEX]),
+        Variant::with_pipeline("cull-cw", cull_cw, "the same with clockwise as the front, the back culled: the clockwise one is left").source("section 9.3").knobs(&[VERTEX]),
+        Variant::with_pipeline("cull-none", cull_none, "the same, nothing culled: both").source("section 9.3").knobs(&[VERTEX, CULL]),
+        Variant::with_pipeline("uncleared", uncleared, "five frames of a moving triangle, nothing cleared between them: the old ones stay").source("section 9.4.1, Figure 9-8").remedied_by("cleared").knobs(FRAMES),
+        Variant::with_pipeline("cleared", cleared, "the fifth of these frames, color and depth cleared before it").source("section 9.4.1").knobs(FRAMES),
         Variant::with_pipeline("double-buffer", double_buffer, "the near plane comes closer by 0.01 a frame, and the triangle of 'vbo' shrinks; no frame is seen half drawn")
             .animated(FLIGHT)
             .source("section 9.4.2"),
-        Variant::with_pipeline("tearing", tearing, "one buffer, seen while it is drawn: the new picture in the lower half, the old one above it").source("section 9.4.2").remedied_by("presented"),
-        Variant::with_pipeline("presented", presented, "two buffers, seen at the same moment: the old picture, whole, which is the picture 'vbo'").source("section 9.4.2, Figure 9-9"),
-        Variant::with_pipeline("indexed", indexed, "a hill of 49 vertices and 72 triangles; each vertex is shaded once, and up to six triangles share it"),
+        Variant::with_pipeline("tearing", tearing, "one buffer, seen while it is drawn: the new picture in the lower half, the old one above it").source("section 9.4.2").remedied_by("presented").knobs(&[FRAME, DRAWN]),
+        Variant::with_pipeline("presented", presented, "two buffers, seen at the same moment: the old picture, whole, which is the picture 'vbo'").source("section 9.4.2, Figure 9-9").knobs(&[FRAME]),
+        Variant::with_pipeline("indexed", indexed, "a hill of 49 vertices and 72 triangles; each vertex is shaded once, and up to six triangles share it").knobs(HILL),
     ],
 };
+
+const BLENDING: &[Knob] = &[
+    Knob::number(
+        "opacity",
+        0.6,
+        [0.0, 1.0],
+        "",
+        "at 1 the last triangle hides the others on the left; on the right it only adds",
+    ),
+    Knob::choice(
+        "order",
+        &[
+            "red-green-blue",
+            "green-blue-red",
+            "blue-red-green",
+            "blue-green-red",
+            "green-red-blue",
+            "red-blue-green",
+        ],
+        "which is drawn first, which last: on the left the overlaps change, on the right they do not",
+    ),
+    Knob::choice("left", &["source-over", "additive", "opaque"], "how the left triangles are blended"),
+    Knob::choice("right", &["additive", "source-over", "opaque"], "how the right triangles are blended"),
+];
+
+const VERTEX: Knob = Knob::point(
+    "vertex",
+    [600.0, 430.0],
+    "drag the small triangle's upper right vertex over the edge on the other side: it runs the other way",
+);
+const CULL: Knob =
+    Knob::choice("cull", &["none", "back", "front"], "the same two triangles, and which are left out");
+
+const FRAMES: &[Knob] = &[Knob::number(
+    "step",
+    90.0,
+    [0.0, 110.0],
+    "pixels",
+    "how far the triangle moves in a frame: the smaller the step, the more of the trail is hidden",
+)];
+
+const FRAME: Knob = Knob::whole(
+    "frame",
+    0,
+    [0, 349],
+    "",
+    "which frame has been shown before; the new one is 150 frames later: the step is where the two differ",
+);
+const DRAWN: Knob = Knob::number(
+    "drawn",
+    50.0,
+    [0.0, 100.0],
+    "%",
+    "how much of the new frame has been drawn when the screen is read: the step moves up",
+);
+
+const HILL: &[Knob] = &[
+    Knob::whole(
+        "side",
+        7,
+        [2, 25],
+        "vertices",
+        "the more vertices, the smoother the bands; with two the hill is lost",
+    ),
+    Knob::choice("cull", &["none", "back", "front"], "without the fronts one looks into the hill"),
+];
 
 /// The view of chapter 8.
 const VIEW: Frustum =
@@ -85,10 +151,12 @@ fn large_triangle() -> Vec<Attributes> {
     ]
 }
 
-/// A second triangle in the upper right, which runs clockwise.
-fn with_clockwise_triangle() -> Vec<Attributes> {
+/// A second triangle in the upper right, which runs clockwise; its middle vertex is where the knob says.
+fn with_clockwise_triangle(knobs: &Knobs) -> Vec<Attributes> {
+    // At the distance 10 a pixel is two units.
+    let [x, y] = ((knobs.point("vertex") - dvec2(320.0, 240.0)) * 2.0).to_array();
     let mut vertices = large_triangle();
-    for (x, y, uv) in [(80.0, 380.0, [0.0, 0.0]), (560.0, 380.0, [0.0, 1.0]), (560.0, 40.0, [1.0, 1.0])] {
+    for (x, y, uv) in [(80.0, 380.0, [0.0, 0.0]), (x, y, [0.0, 1.0]), (560.0, 40.0, [1.0, 1.0])] {
         vertices.push(Attributes { position: dvec3(x, y, 10.0), uv });
     }
     vertices
@@ -110,24 +178,33 @@ fn vbo(canvas: &mut Canvas) {
     textured_picture(canvas, large_triangle(), &RenderState::default());
 }
 
+fn cull_mode(knobs: &Knobs) -> CullMode {
+    match knobs.choice("cull") {
+        "back" => CullMode::Back,
+        "front" => CullMode::Front,
+        _ => CullMode::None,
+    }
+}
+
 // ANCHOR: culling
 /// The front of a triangle runs counter-clockwise; the back is culled.
 fn cull_ccw(canvas: &mut Canvas) {
     let state =
         RenderState { cull: CullMode::Back, front_face: Winding::CounterClockwise, ..RenderState::default() };
-    textured_picture(canvas, with_clockwise_triangle(), &state);
+    textured_picture(canvas, with_clockwise_triangle(&canvas.knobs), &state);
 }
 
 /// Clockwise ones are kept.
 fn cull_cw(canvas: &mut Canvas) {
     let state =
         RenderState { cull: CullMode::Back, front_face: Winding::Clockwise, ..RenderState::default() };
-    textured_picture(canvas, with_clockwise_triangle(), &state);
+    textured_picture(canvas, with_clockwise_triangle(&canvas.knobs), &state);
 }
 
-/// Both are kept.
+/// Both are kept, unless the knob says otherwise.
 fn cull_none(canvas: &mut Canvas) {
-    textured_picture(canvas, with_clockwise_triangle(), &RenderState::default());
+    let state = RenderState { cull: cull_mode(&canvas.knobs), ..RenderState::default() };
+    textured_picture(canvas, with_clockwise_triangle(&canvas.knobs), &state);
 }
 // ANCHOR_END: culling
 
@@ -163,13 +240,13 @@ fn draw_frame(canvas: &mut Canvas, frame: u32) {
 // ANCHOR: uncleared
 /// Five frames of a triangle that moves to the right, drawn into one target.
 fn five_frames(canvas: &mut Canvas, clear: bool) {
-    let state = RenderState::default();
+    let (state, step) = (RenderState::default(), canvas.knobs.number("step"));
     canvas.clear(&state);
     for frame in 0..5 {
         if clear {
             canvas.clear(&state);
         }
-        let (x, fade) = (30.0 + 90.0 * f64::from(frame), 50.0 * f64::from(frame));
+        let (x, fade) = (30.0 + step * f64::from(frame), 50.0 * f64::from(frame));
         let corners = vec![[x, 90.0], [x + 190.0, 150.0], [x + 60.0, 400.0]];
         let shader = Flat { color: [40.0 + fade, 90.0 + fade / 3.0, 240.0 - fade], opacity: 1.0 };
         canvas.draw(&Mesh::unindexed(corners).expect("whole triangles"), &shader, &state);
@@ -187,14 +264,20 @@ fn cleared(canvas: &mut Canvas) {
 }
 // ANCHOR_END: uncleared
 
+/// The frame before the one that is being drawn.
+fn shown_frame(canvas: &Canvas) -> u32 {
+    canvas.knobs.whole("frame").unsigned_abs()
+}
+
 // ANCHOR: tearing
 /// A screen with one buffer, looked at when the lower half of the new picture has been drawn.
 fn tearing(canvas: &mut Canvas) {
-    draw_frame(canvas, 0);
+    let drawn = canvas.knobs.number("drawn") / 100.0;
+    draw_frame(canvas, shown_frame(canvas));
     let old = canvas.picture().clone();
-    draw_frame(canvas, 150);
+    draw_frame(canvas, shown_frame(canvas) + 150);
     let picture = canvas.picture_mut();
-    for y in picture.rect().rows().skip(picture.height() as usize / 2) {
+    for y in picture.rect().rows().skip((f64::from(picture.height()) * drawn) as usize) {
         for x in picture.rect().columns() {
             picture.set(x, y, old.get(x, y).unwrap_or_default());
         }
@@ -204,9 +287,9 @@ fn tearing(canvas: &mut Canvas) {
 /// A screen with two buffers, looked at in the same moment: the new picture is in the back buffer, unseen.
 fn presented(canvas: &mut Canvas) {
     let mut screen = screen_for(canvas);
-    draw_frame(canvas, 0);
+    draw_frame(canvas, shown_frame(canvas));
     screen.present(canvas.picture_mut());
-    draw_frame(canvas, 150);
+    draw_frame(canvas, shown_frame(canvas) + 150);
     *canvas.picture_mut() = screen.front().clone();
 }
 // ANCHOR_END: tearing
@@ -231,23 +314,21 @@ impl Shader<1> for Relief {
     }
 }
 
-/// A hill of 7×7 vertices.
+/// A hill of 7×7 vertices, unless the knob says otherwise.
 fn indexed(canvas: &mut Canvas) {
+    let side = canvas.knobs.whole("side").unsigned_abs();
     let vertex = |column: u32, row: u32| {
-        let (x, z) = (f64::from(column) - 3.0, f64::from(row) - 3.0);
+        let [x, z] = [column, row].map(|place| f64::from(6 * place) / f64::from(side - 1) - 3.0);
         dvec3(2.4 * x, 4.5 / (1.0 + 0.35 * (x * x + z * z)) - 4.6, 13.0 + 2.0 * z)
     };
-    let vertices = (0..49).map(|i| vertex(i % 7, i / 7)).collect();
-    let quads = (0..36).map(|i| i / 6 * 7 + i % 6);
-    let indices = quads
-        .flat_map(|corner| [corner, corner + 1, corner + 7, corner + 1, corner + 8, corner + 7])
+    let vertices = (0..side * side).map(|i| vertex(i % side, i / side)).collect();
+    let squares = (0..side - 1).flat_map(|row| (0..side - 1).map(move |column| row * side + column));
+    let indices = squares
+        .flat_map(|corner| [corner, corner + 1, corner + side, corner + 1, corner + side + 1, corner + side])
         .collect();
 
-    canvas.render(
-        &Mesh::indexed(vertices, indices).expect("indices of the hill"),
-        &Relief,
-        &RenderState::default(),
-    );
+    let state = RenderState { cull: cull_mode(&canvas.knobs), ..RenderState::default() };
+    canvas.render(&Mesh::indexed(vertices, indices).expect("indices of the hill"), &Relief, &state);
 }
 // ANCHOR_END: indexed
 
@@ -274,8 +355,18 @@ impl Shader<0> for Flat {
     }
 }
 
+fn blend_mode(name: &str) -> Blend {
+    match name {
+        "source-over" => Blend::SourceOver,
+        "additive" => Blend::Additive,
+        _ => Blend::Opaque,
+    }
+}
+
 /// Three overlapping triangles on either side, blended in two ways.
 fn blended(canvas: &mut Canvas) {
+    let (opacity, order) = (canvas.knobs.number("opacity"), canvas.knobs.choice("order"));
+    let [left, right] = ["left", "right"].map(|side| blend_mode(canvas.knobs.choice(side)));
     canvas.clear(&RenderState { clear_color: Color::gray(40), ..RenderState::default() });
     let mut add = |corners: [[f64; 2]; 3], color, opacity, blend| {
         let merge = Merge { blend, ..Merge::default() };
@@ -298,11 +389,16 @@ fn blended(canvas: &mut Canvas) {
             add(corners, [75.0; 3], 1.0, Blend::Opaque);
         }
     }
-    for (shift, blend) in [(0.0, Blend::SourceOver), (310.0, Blend::Additive)] {
+    for (shift, blend) in [(0.0, left), (310.0, right)] {
         let at = |x: f64, y: f64| [x + shift, y];
-        add([at(40.0, 180.0), at(220.0, 180.0), at(130.0, 440.0)], [230.0, 60.0, 50.0], 0.6, blend);
-        add([at(100.0, 60.0), at(290.0, 140.0), at(120.0, 320.0)], [60.0, 190.0, 80.0], 0.6, blend);
-        add([at(70.0, 300.0), at(260.0, 220.0), at(280.0, 400.0)], [70.0, 110.0, 240.0], 0.6, blend);
+        for name in order.split('-') {
+            let (corners, color) = match name {
+                "red" => ([at(40.0, 180.0), at(220.0, 180.0), at(130.0, 440.0)], [230.0, 60.0, 50.0]),
+                "green" => ([at(100.0, 60.0), at(290.0, 140.0), at(120.0, 320.0)], [60.0, 190.0, 80.0]),
+                _ => ([at(70.0, 300.0), at(260.0, 220.0), at(280.0, 400.0)], [70.0, 110.0, 240.0]),
+            };
+            add(corners, color, opacity, blend);
+        }
     }
 }
 // ANCHOR_END: blended

@@ -2,7 +2,7 @@
 
 use glam::{DMat4, DVec3, dvec3};
 use rasterbook::cull::CullMode;
-use rasterbook::figure::{Canvas, Subject};
+use rasterbook::figure::{Canvas, Knob, Subject};
 use rasterbook::light::lambert;
 use rasterbook::model::ModelVertex;
 use rasterbook::payload::{StepLimit, Walk};
@@ -11,13 +11,24 @@ use rasterbook::transform::{Frustum, about, rotate_x_to_y, rotate_z_to_y};
 use rasterbook::{ClipVertex, Real, RenderState, Shaded, Shader};
 
 use super::degrees;
+use super::directions::{LIGHT, light_azimuth, light_elevation, to_light};
+
+pub(super) const KNOBS: &[Knob] = &[
+    light_azimuth(45.0),
+    light_elevation(35.26),
+    Knob::number(
+        "ambient",
+        0.2,
+        [0.0, 1.0],
+        "",
+        "at 0 the dark side cannot be told from the background, at 1 nothing has a shape",
+    ),
+];
 
 /// The camera of the book's last chapter.
 const CAMERA: Frustum = Frustum { left: -1.6, right: 1.6, bottom: -1.2, top: 1.2, near: 2.0, far: 10.0 };
 /// Towards the light: from the upper right, behind the eye; of length 1.
 const TO_LIGHT: [f64; 3] = [0.577_350_269_189_625_8, 0.577_350_269_189_625_8, -0.577_350_269_189_625_8];
-/// The light that is everywhere.
-const AMBIENT: f64 = 0.2;
 
 // ANCHOR: lit_shader
 /// Diffuse light on a texture.
@@ -25,6 +36,9 @@ struct Lit {
     clip_from_model: DMat4,
     view_from_model: DMat4,
     texture: Texture,
+    to_light: [f64; 3],
+    /// The light that is everywhere.
+    ambient: f64,
 }
 
 impl Shader<5> for Lit {
@@ -44,8 +58,8 @@ impl Shader<5> for Lit {
     }
 
     fn fragment<R: Real>(&self, [u, v, nx, ny, nz]: [R; 5]) -> Shaded<R> {
-        let diffuse = lambert([nx, ny, nz], TO_LIGHT.map(R::of));
-        let brightness = (diffuse + R::of(AMBIENT)).min(R::of(1.0));
+        let diffuse = lambert([nx, ny, nz], self.to_light.map(R::of));
+        let brightness = (diffuse + R::of(self.ambient)).min(R::of(1.0));
         Shaded::opaque(self.texture.nearest([u, v], AddressMode::Repeat).map(|channel| brightness * channel))
     }
 }
@@ -64,8 +78,10 @@ fn draw_subject(canvas: &mut Canvas, subject: &Subject, walk: Walk) {
     canvas.clear(&state);
     let view_from_model = turned(canvas.frame);
     let clip_from_model = CAMERA.matrix() * view_from_model;
+    let (to_light, ambient) = (to_light(&canvas.knobs, LIGHT, TO_LIGHT), canvas.knobs.number("ambient"));
     for part in &subject.model.parts {
-        let shader = Lit { clip_from_model, view_from_model, texture: subject.texture_of(part) };
+        let texture = subject.texture_of(part);
+        let shader = Lit { clip_from_model, view_from_model, texture, to_light, ambient };
         canvas.draw(&part.mesh, &shader, &state);
     }
 }

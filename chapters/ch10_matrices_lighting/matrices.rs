@@ -1,8 +1,8 @@
 //! What matrices do: turn, turn about a point, and put the eye where one likes.
 
-use glam::{DMat4, DVec3, dvec3};
+use glam::{DMat4, DVec3, dvec2, dvec3};
 use rasterbook::cull::CullMode;
-use rasterbook::figure::{Canvas, assets};
+use rasterbook::figure::{Canvas, Knob, Knobs, assets};
 use rasterbook::light::lambert;
 use rasterbook::model::ModelVertex;
 use rasterbook::texture::{AddressMode, Texture};
@@ -12,6 +12,49 @@ use rasterbook::transform::{
 use rasterbook::{ClipVertex, Color, Mesh, Real, RenderState, Shaded, Shader};
 
 use super::degrees;
+use super::directions::{direction, is_turned};
+
+pub(super) const ROTATION: &[Knob] = &[Knob::number(
+    "angle",
+    0.0,
+    [-90.0, 90.0],
+    "°",
+    "added to the frame's: from 76 on we see the back, which is not drawn",
+)];
+
+pub(super) const PIVOT: &[Knob] = &[
+    Knob::number(
+        "step",
+        10.0,
+        [0.0, 40.0],
+        "°",
+        "from arrow to arrow: on the left they spread along a circle about the dot, on the right they stay",
+    ),
+    Knob::point(
+        "pivot",
+        [690.0, 110.0],
+        "the point on the right about which the arrow turns: drag it away, and the arrow circles it",
+    ),
+];
+
+pub(super) const CAMERA: &[Knob] = &[
+    Knob::number(
+        "azimuth",
+        32.9,
+        [-180.0, 180.0],
+        "°",
+        "the eye goes round; what is in the middle stays there",
+    ),
+    Knob::number(
+        "elevation",
+        23.5,
+        [2.0, 88.0],
+        "°",
+        "the eye goes up: upright edges lean outwards more and more",
+    ),
+    Knob::number("distance", 11.0, [7.5, 30.0], "", "the eye goes away: what is near shrinks most"),
+    Knob::number("field-of-view", 40.0, [10.0, 100.0], "°", "the view widens, and everything shrinks alike"),
+];
 
 /// A textured surface without light.
 struct Textured {
@@ -36,7 +79,7 @@ impl Shader<2> for Textured {
 pub(super) fn rotation(canvas: &mut Canvas) {
     let camera = Frustum { left: -3.2, right: 3.2, bottom: -2.4, top: 2.4, near: 1.0, far: 10.0 };
     let axis = dvec3(0.0, 0.0, 4.0);
-    let turn = rotate_x_to_z(degrees(f64::from(canvas.frame)));
+    let turn = rotate_x_to_z(degrees(f64::from(canvas.frame) + canvas.knobs.number("angle")));
     // Read from the right: to the origin, turn, back, project.
     let clip_from_model = camera.matrix() * translate(axis) * turn * translate(-axis);
 
@@ -80,20 +123,24 @@ const ARROW: [[f64; 2]; 9] = [
 ];
 
 // ANCHOR: pivot
-/// An arrow, turned in steps of 10°: about the origin on the left, about its middle on the right.
+/// An arrow, turned in steps of 10°: about the origin on the left, about its middle, or another point, on the right.
 pub(super) fn pivot(canvas: &mut Canvas) {
-    let state = RenderState::default();
-    canvas.clear(&state);
+    canvas.clear(&RenderState::default());
+    let angle = canvas.knobs.number("step");
+    // 100 pixels for a unit; the right panel's origin is at (450, 50).
+    let pivot = ((canvas.knobs.point("pivot") - dvec2(450.0, 50.0)) / 100.0).extend(0.0);
     // Two square panels that show −0.5 to 3.5 in both directions, without perspective.
     let clip_from_world = scale(dvec3(0.5, 0.5, 1.0)) * translate(dvec3(-1.5, -1.5, 0.0));
     let place = dvec3(2.4, 0.6, 0.0);
+    // The pivot; the arrows hide it as long as it is in their middle.
+    draw_dot(canvas, clip_from_world * translate(pivot), 1);
     for step in 0..9 {
-        let turn = rotate_x_to_y(degrees(10.0 * f64::from(step)));
+        let turn = rotate_x_to_y(degrees(angle * f64::from(step)));
         let tone = 60.0 + 24.0 * f64::from(step);
         let about_origin = turn * translate(place);
-        let about_middle = about(place, turn) * translate(place);
+        let about_pivot = about(pivot, turn) * translate(place);
         let colors = [[tone, tone / 2.0, 40.0], [40.0, tone * 0.75, tone]].map(Color::truncated);
-        let panels = [about_origin, about_middle].into_iter().zip(colors);
+        let panels = [about_origin, about_pivot].into_iter().zip(colors);
         for (panel, (world_from_model, color)) in (0..).zip(panels) {
             let clip_from_model = clip_from_world * world_from_model;
             draw_flat(canvas, &ARROW, &Plain { clip_from_model, color }, canvas.panel(panel, 2));
@@ -101,12 +148,16 @@ pub(super) fn pivot(canvas: &mut Canvas) {
     }
     // The origin.
     for panel in 0..2 {
-        let dot = [[-0.04, -0.04], [0.04, -0.04], [0.04, 0.04], [-0.04, -0.04], [0.04, 0.04], [-0.04, 0.04]];
-        let shader = Plain { clip_from_model: clip_from_world, color: Color::WHITE };
-        draw_flat(canvas, &dot, &shader, canvas.panel(panel, 2));
+        draw_dot(canvas, clip_from_world, panel);
     }
 }
 // ANCHOR_END: pivot
+
+/// A white dot at the model's origin.
+fn draw_dot(canvas: &mut Canvas, clip_from_model: DMat4, panel: u32) {
+    let dot = [[-0.04, -0.04], [0.04, -0.04], [0.04, 0.04], [-0.04, -0.04], [0.04, 0.04], [-0.04, 0.04]];
+    draw_flat(canvas, &dot, &Plain { clip_from_model, color: Color::WHITE }, canvas.panel(panel, 2));
+}
 
 fn draw_flat(canvas: &mut Canvas, corners: &[[f64; 2]], shader: &Plain, panel: Viewport) {
     let state = RenderState { viewport: Some(panel), ..RenderState::default() };
@@ -139,12 +190,25 @@ impl Shader<5> for LitInWorld {
     }
 }
 
+/// What the camera looks at.
+const TARGET: DVec3 = dvec3(0.0, 0.6, 0.5);
+
+/// Where the eye is: of the pinned picture at a place in whole numbers, which the angles come near.
+fn eye(knobs: &Knobs) -> DVec3 {
+    const NAMES: [&str; 3] = ["azimuth", "elevation", "distance"];
+    if !is_turned(knobs, &NAMES) {
+        return dvec3(5.5, 5.0, -8.0);
+    }
+    let [azimuth, elevation, distance] = NAMES.map(|name| knobs.number(name));
+    TARGET + distance * direction(azimuth, elevation)
+}
+
 // ANCHOR: camera
 /// A few things on the ground, seen from the upper right.
 pub(super) fn camera(canvas: &mut Canvas) {
-    let eye = dvec3(5.5, 5.0, -8.0);
-    let view_from_world = look_at(eye, dvec3(0.0, 0.6, 0.5), DVec3::Y);
-    let clip_from_view = Frustum::from_field_of_view(degrees(40.0), 4.0 / 3.0, 1.0, 40.0).matrix();
+    let view_from_world = look_at(eye(&canvas.knobs), TARGET, DVec3::Y);
+    let field_of_view = degrees(canvas.knobs.number("field-of-view"));
+    let clip_from_view = Frustum::from_field_of_view(field_of_view, 4.0 / 3.0, 1.0, 40.0).matrix();
     let clip_from_world = clip_from_view * view_from_world;
 
     let state = RenderState {

@@ -4,12 +4,78 @@ use std::f64::consts::{PI, TAU};
 
 use glam::{DMat3, DMat4, DVec3, dvec3};
 use rasterbook::cull::CullMode;
-use rasterbook::figure::Canvas;
+use rasterbook::figure::{Canvas, Knob, Knobs};
 use rasterbook::light::{Highlight, Light, Material, normalize};
 use rasterbook::transform::{Frustum, normal_matrix, rotate_x_to_y, scale, translate};
 use rasterbook::{ClipVertex, Color, Mesh, Real, RenderState, Shaded, Shader};
 
 use super::degrees;
+use super::directions::{LIGHT, light_azimuth, light_elevation, to_light};
+
+const EXPONENT: Knob = Knob::number(
+    "exponent",
+    24.0,
+    [1.0, 200.0],
+    "",
+    "the highlight becomes small and sharp; in 'gouraud' the coarse ball then has next to none",
+);
+const RINGS: Knob = Knob::whole(
+    "rings",
+    7,
+    [3, 24],
+    "rings",
+    "the coarse ball gets more faces: with light at its vertices it comes to look like the fine one",
+);
+const ANGLES: [Knob; 2] = [light_azimuth(-29.1), light_elevation(36.1)];
+
+pub(super) const TWO_BALLS: &[Knob] = &[EXPONENT, RINGS, ANGLES[0], ANGLES[1]];
+
+pub(super) const HIGHLIGHTS: &[Knob] = &[
+    EXPONENT,
+    Knob::number(
+        "broad-exponent",
+        0.5,
+        [0.1, 8.0],
+        "",
+        "that of the ball below: the smaller, the harder the edge of Phong's highlight",
+    ),
+    ANGLES[0],
+    ANGLES[1],
+];
+
+pub(super) const DISTANCE: &[Knob] = &[
+    Knob::number(
+        "lamp-x",
+        -2.8,
+        [-2.8, 2.8],
+        "",
+        "the lamp goes along the lower row: the ball next to it is bright",
+    ),
+    Knob::number(
+        "lamp-z",
+        3.9,
+        [1.0, 5.2],
+        "",
+        "the lamp comes closer: the nearest ball outshines the next ones; far away all are dim alike",
+    ),
+];
+
+pub(super) const NORMALS: &[Knob] = &[
+    Knob::number(
+        "scale-x",
+        2.3,
+        [0.3, 2.6],
+        "",
+        "at 1.6, with scale-y=1.6, it is a ball, and the mistake cannot be seen",
+    ),
+    Knob::number(
+        "scale-y",
+        0.55,
+        [0.1, 2.3],
+        "",
+        "the flatter the ball, the more its normals should turn up",
+    ),
+];
 
 /// A point of a ball of radius 1, and the normal that goes with it.
 #[derive(Clone, Copy)]
@@ -117,8 +183,20 @@ fn state() -> RenderState {
     RenderState { cull: CullMode::Back, clear_color: Color::gray(28), ..RenderState::default() }
 }
 
+/// Towards the light of most figures.
+fn light(knobs: &Knobs) -> Light {
+    Light::Directional(to_light(knobs, LIGHT, normalize([-0.5, 0.75, -0.9])))
+}
+
 /// A ball of some material at a place, which is its middle in camera space, and its radius.
-fn ball_at(place: DVec3, radius: f64, color: [f64; 3], frequency: Frequency, material: Material) -> Ball {
+fn ball_at(
+    place: DVec3,
+    radius: f64,
+    color: [f64; 3],
+    frequency: Frequency,
+    material: Material,
+    light: Light,
+) -> Ball {
     let view_from_model = translate(place) * scale(DVec3::splat(radius));
     Ball {
         clip_from_view: CAMERA.matrix(),
@@ -127,17 +205,19 @@ fn ball_at(place: DVec3, radius: f64, color: [f64; 3], frequency: Frequency, mat
         frequency,
         material,
         color,
-        light: Light::Directional(normalize([-0.5, 0.75, -0.9])),
+        light,
     }
 }
 
 /// A coarse ball on the left and a fine one on the right.
 fn two_balls(canvas: &mut Canvas, frequency: Frequency, is_faceted: bool) {
     canvas.clear(&state());
-    for (x, color, rings, segments) in [(-1.55, CORAL, 7, 10), (1.55, TEAL, 24, 36)] {
+    let shiny = Material { exponent: canvas.knobs.number("exponent"), ..SHINY };
+    let (coarse, light) = (canvas.knobs.whole("rings").unsigned_abs(), light(&canvas.knobs));
+    for (x, color, rings, segments) in [(-1.55, CORAL, coarse, coarse * 10 / 7), (1.55, TEAL, 24, 36)] {
         let mesh = ball(rings, segments);
         let mesh = if is_faceted { faceted(&mesh) } else { mesh };
-        canvas.draw(&mesh, &ball_at(dvec3(x, 0.0, 5.0), 1.4, color, frequency, SHINY), &state());
+        canvas.draw(&mesh, &ball_at(dvec3(x, 0.0, 5.0), 1.4, color, frequency, shiny, light), &state());
     }
 }
 
@@ -165,19 +245,20 @@ pub(super) fn blinn_phong(canvas: &mut Canvas) {
 /// Above, a coarse and a fine ball; below, a dull floor-like ball under light from behind, with a broad highlight.
 fn highlights(canvas: &mut Canvas, highlight: Highlight) {
     canvas.clear(&state());
-    let shiny = Material { highlight, ..SHINY };
+    let [exponent, broad] = ["exponent", "broad-exponent"].map(|name| canvas.knobs.number(name));
+    let (shiny, light) = (Material { exponent, highlight, ..SHINY }, light(&canvas.knobs));
     for (x, color, rings, segments) in [(-1.55, CORAL, 7, 10), (1.55, TEAL, 24, 36)] {
-        let shader = ball_at(dvec3(x, 1.0, 6.0), 1.35, color, Frequency::Fragment, shiny);
+        let shader = ball_at(dvec3(x, 1.0, 6.0), 1.35, color, Frequency::Fragment, shiny, light);
         canvas.draw(&ball(rings, segments), &shader, &state());
     }
     // The flattened ball below is so large that we see a slope of it, and the light comes low from behind us.
-    let broad = Material { ambient: 0.05, diffuse: 0.25, specular: 0.8, exponent: 0.5, highlight };
+    let broad = Material { ambient: 0.05, diffuse: 0.25, specular: 0.8, exponent: broad, highlight };
+    let low = Light::Directional(normalize([-0.9, 0.25, -0.6]));
     let view_from_model = translate(dvec3(0.0, -2.2, 6.0)) * scale(dvec3(3.2, 1.2, 2.0));
     let grazing = Ball {
         view_from_model,
         normals: normal_matrix(view_from_model),
-        light: Light::Directional(normalize([-0.9, 0.25, -0.6])),
-        ..ball_at(DVec3::ZERO, 1.0, [120.0, 120.0, 130.0], Frequency::Fragment, broad)
+        ..ball_at(DVec3::ZERO, 1.0, [120.0, 120.0, 130.0], Frequency::Fragment, broad, low)
     };
     canvas.draw(&ball(40, 60), &grazing, &state());
 }
@@ -189,13 +270,13 @@ pub(super) fn distance(canvas: &mut Canvas) {
     canvas.clear(&state());
     let dull = Material { highlight: Highlight::None, ambient: 0.1, diffuse: 0.9, ..SHINY };
     let mesh = ball(24, 36);
+    let [lamp_x, lamp_z] = ["lamp-x", "lamp-z"].map(|name| canvas.knobs.number(name));
     for (y, color) in [(1.1, TEAL), (-1.1, CORAL)] {
         for i in 0..5 {
             let place = dvec3(-2.8 + 1.4 * f64::from(i), y, 6.0);
-            let parallel = ball_at(place, 0.62, color, Frequency::Fragment, dull);
-            let lamp = Light::Point { position: [-2.8, y, 3.9], intensity: 3.0 };
+            let lamp = Light::Point { position: [lamp_x, y, lamp_z], intensity: 3.0 };
             let light = if y > 0.0 { Light::Directional([0.0, 0.0, -1.0]) } else { lamp };
-            canvas.draw(&mesh, &Ball { light, ..parallel }, &state());
+            canvas.draw(&mesh, &ball_at(place, 0.62, color, Frequency::Fragment, dull, light), &state());
         }
     }
 }
@@ -206,13 +287,14 @@ pub(super) fn distance(canvas: &mut Canvas) {
 fn flattened(canvas: &mut Canvas, normals: impl Fn(DMat4) -> DMat3) {
     canvas.clear(&state());
     let dull = Material { highlight: Highlight::None, ambient: 0.15, diffuse: 0.85, ..SHINY };
+    let [x, y] = ["scale-x", "scale-y"].map(|name| canvas.knobs.number(name));
     let tilt = rotate_x_to_y(degrees(15.0));
-    let view_from_model = translate(dvec3(0.0, 0.0, 5.0)) * tilt * scale(dvec3(2.3, 0.55, 1.6));
+    let view_from_model = translate(dvec3(0.0, 0.0, 5.0)) * tilt * scale(dvec3(x, y, 1.6));
+    let light = Light::Directional(normalize([-0.2, 1.0, -0.5]));
     let shader = Ball {
         view_from_model,
         normals: normals(view_from_model),
-        light: Light::Directional(normalize([-0.2, 1.0, -0.5])),
-        ..ball_at(DVec3::ZERO, 1.0, [225.0, 190.0, 120.0], Frequency::Fragment, dull)
+        ..ball_at(DVec3::ZERO, 1.0, [225.0, 190.0, 120.0], Frequency::Fragment, dull, light)
     };
     canvas.draw(&ball(40, 60), &shader, &state());
 }

@@ -1,10 +1,18 @@
 //! What the numbers of a color mean: light computed with stored numbers, and with amounts of light.
 
 use glam::{DVec2, DVec4, dvec4};
-use rasterbook::figure::Canvas;
+use rasterbook::figure::{Canvas, Knob};
 use rasterbook::light::{lambert, normalize};
 use rasterbook::srgb::{decode, encode};
 use rasterbook::{ClipVertex, Color, Mesh, Real, RenderState, Shaded, Shader};
+
+pub(super) const KNOBS: &[Knob] = &[Knob::whole(
+    "period",
+    2,
+    [2, 6],
+    "columns",
+    "one column of so many is white, and the gray below has as much of it: only amounts of light keep them alike",
+)];
 
 // ANCHOR: space
 /// In which numbers light is added and multiplied.
@@ -42,15 +50,17 @@ enum Sample {
     Ball,
     /// Red on the left, green on the right, and their mixtures.
     Mixture,
-    /// Upright lines, one pixel wide, black and white.
+    /// Upright lines, one pixel wide, white and one black, or more of them.
     Stripes,
-    /// The mean of black and white.
+    /// The mean of these lines.
     Mean,
 }
 
 struct Rectangle {
     space: Space,
     sample: Sample,
+    /// The part of the lines that is white.
+    white: f64,
 }
 
 // ANCHOR: samples
@@ -80,11 +90,13 @@ impl Shader<3> for Rectangle {
             Sample::Mixture => {
                 Shaded::opaque(self.space.leave(mix(light(red), light(green), (x + one) * R::of(0.5))))
             }
-            Sample::Mean => Shaded::opaque(self.space.leave(mix(light(black), light(white), R::of(0.5)))),
+            Sample::Mean => {
+                Shaded::opaque(self.space.leave(mix(light(black), light(white), R::of(self.white))))
+            }
             Sample::Stripes => {
-                let half = column * R::of(0.5);
-                let is_even = (half - half.floor()).is_less(R::of(0.5));
-                Shaded::opaque([0, 1, 2].map(|k| R::select(is_even, black[k], white[k])))
+                let period = column * R::of(self.white);
+                let is_black = (period - period.floor()).is_less(R::of(1.0 - self.white));
+                Shaded::opaque([0, 1, 2].map(|k| R::select(is_black, black[k], white[k])))
             }
         }
     }
@@ -102,6 +114,7 @@ const PLACES: [(Sample, [f64; 4]); 4] = [
 fn draw(canvas: &mut Canvas, space: Space) {
     let state = RenderState { clear_color: Color::gray(60), ..RenderState::default() };
     canvas.clear(&state);
+    let white = 1.0 / f64::from(canvas.knobs.whole("period"));
     for (sample, [left, bottom, right, top]) in PLACES {
         let corners = [
             (left, bottom, -1.0, -1.0),
@@ -113,7 +126,7 @@ fn draw(canvas: &mut Canvas, space: Space) {
             (dvec4(column / 320.0 - 1.0, row / 240.0 - 1.0, 0.0, 1.0), DVec2::new(x, y), column)
         });
         let mesh = Mesh::indexed(vertices.to_vec(), vec![0, 1, 2, 0, 2, 3]).expect("two triangles");
-        canvas.draw(&mesh, &Rectangle { space, sample }, &state);
+        canvas.draw(&mesh, &Rectangle { space, sample, white }, &state);
     }
 }
 

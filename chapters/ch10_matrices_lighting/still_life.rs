@@ -5,7 +5,7 @@ use std::array::from_fn;
 use glam::{DMat4, DVec3, dvec3};
 use rasterbook::area::Winding;
 use rasterbook::cull::CullMode;
-use rasterbook::figure::{Canvas, assets};
+use rasterbook::figure::{Canvas, Knob, assets};
 use rasterbook::light::{blinn_phong, dot, lambert, normalize};
 use rasterbook::merge::{Blend, Merge};
 use rasterbook::mipmap::MipMaps;
@@ -17,6 +17,39 @@ use rasterbook::varyings::Derivatives;
 use rasterbook::{ClipVertex, Color, LoadOp, Mesh, Real, RenderState, Shaded, Shader};
 
 use super::degrees;
+use super::directions::to_light;
+
+pub(super) const KNOBS: &[Knob] = &[
+    Knob::number(
+        "azimuth",
+        -28.0,
+        [-180.0, 180.0],
+        "°",
+        "the eye goes round: the reflections stay below their pieces",
+    ),
+    Knob::number(
+        "height",
+        2.3,
+        [0.3, 8.0],
+        "",
+        "that of the eye: from above, the reflections hide below their pieces",
+    ),
+    Knob::number(
+        "opacity",
+        0.86,
+        [0.0, 1.0],
+        "",
+        "that of the board: at 1 nothing is reflected, at 0 pieces stand on their heads below a board of glass",
+    ),
+    Knob::number(
+        "sun-azimuth",
+        -126.9,
+        [-180.0, 180.0],
+        "°",
+        "the sun goes round: shadows point away from it",
+    ),
+    Knob::number("sun-elevation", 36.9, [8.0, 90.0], "°", "the sun goes up: shadows become short"),
+];
 
 /// Towards the light: from the upper left, a little from behind; of length 1.
 const TO_LIGHT: [f64; 3] = [-0.640, 0.600, 0.480];
@@ -34,6 +67,7 @@ type Ball = ([f64; 3], f64);
 struct View {
     clip_from_world: DMat4,
     eye: [f64; 3],
+    to_light: [f64; 3],
 }
 
 /// A polished thing.
@@ -77,7 +111,7 @@ impl Thing {
     fn shade<R: Real>(&self, place: [R; 3], normal: [R; 3], texel: [R; 3]) -> Shaded<R> {
         let normal = normalize(normal);
         let to_eye = normalize(from_fn(|i| R::of(self.view.eye[i]) - place[i]));
-        let to_light = TO_LIGHT.map(R::of);
+        let to_light = self.view.to_light.map(R::of);
         let diffuse = lambert(normal, to_light);
         let gloss = blinn_phong(normal, to_light, to_eye, 60.0) * R::of(0.55);
         // What turns down sees the floor, not the sky.
@@ -96,6 +130,7 @@ struct Board {
     view: View,
     texture: MipMaps,
     balls: Vec<Ball>,
+    opacity: f64,
 }
 
 /// Varyings: x and z in the world.
@@ -122,10 +157,11 @@ impl Shader<2> for Board {
 impl Board {
     fn shade<R: Real>(&self, x: R, z: R, texel: [R; 3]) -> Shaded<R> {
         let (zero, one) = (R::of(0.0), R::of(1.0));
+        let to_light = self.view.to_light;
         let (mut sun, mut sky) = (one, one);
         for &(center, radius) in &self.balls {
             let way = [R::of(center[0]) - x, R::of(center[1]), R::of(center[2]) - z];
-            let along = dot(way, TO_LIGHT.map(R::of));
+            let along = dot(way, to_light.map(R::of));
             let distance = (dot(way, way) - along * along).max(zero).sqrt();
             // The farther the ball, the softer its shadow.
             let soft = along.max(zero) * R::of(0.05) + R::of(0.015);
@@ -135,7 +171,7 @@ impl Board {
             sky = sky * (one - (hidden * R::of(0.8)).min(R::of(0.8)));
         }
         let surface = decode(texel);
-        let light = from_fn(|k| surface[k] * (R::of(SKY[k]) * sky + R::of(SUN[k] * TO_LIGHT[1]) * sun));
+        let light = from_fn(|k| surface[k] * (R::of(SKY[k]) * sky + R::of(SUN[k] * to_light[1]) * sun));
         // Far away the board fades into the horizon.
         let [dx, dz] = [x - R::of(self.view.eye[0]), z - R::of(self.view.eye[2])];
         let far = ((dx * dx + dz * dz).sqrt() * R::of(1.0 / 26.0)).min(one);
@@ -143,7 +179,7 @@ impl Board {
         let (color, horizon) = (encode(light), HORIZON.to_f64());
         let color = from_fn(|k| color[k] + (R::of(horizon[k]) - color[k]) * fade);
         // Seen at a flat angle a polished board reflects more.
-        Shaded::translucent(color, R::of(0.86) + fade * R::of(0.14))
+        Shaded::translucent(color, R::of(self.opacity) + fade * R::of(1.0 - self.opacity))
     }
 }
 
@@ -205,11 +241,14 @@ fn stand((model, _, [x, z], height, _): &Piece) -> (DMat4, Vec<Ball>) {
 
 /// Pieces on a polished board, one turn of the camera in all frames.
 pub(super) fn still_life(canvas: &mut Canvas) {
-    let angle = degrees(-28.0 + 3.0 * f64::from(canvas.frame));
-    let eye = dvec3(6.4 * libm::sin(angle), 2.3, -6.4 * libm::cos(angle));
+    let knobs = canvas.knobs.clone();
+    let angle = degrees(knobs.number("azimuth") + 3.0 * f64::from(canvas.frame));
+    let eye = dvec3(6.4 * libm::sin(angle), knobs.number("height"), -6.4 * libm::cos(angle));
     let view_from_world = look_at(eye, dvec3(0.0, 0.35, 0.2), DVec3::Y);
     let clip_from_view = Frustum::from_field_of_view(degrees(36.0), 16.0 / 9.0, 0.5, 60.0).matrix();
-    let view = View { clip_from_world: clip_from_view * view_from_world, eye: eye.to_array() };
+    let (clip_from_world, to_light) =
+        (clip_from_view * view_from_world, to_light(&knobs, ["sun-azimuth", "sun-elevation"], TO_LIGHT));
+    let view = View { clip_from_world, eye: eye.to_array(), to_light };
     let stood: Vec<(DMat4, Vec<Ball>)> = PIECES.iter().map(stand).collect();
 
     let state = RenderState {
@@ -224,7 +263,7 @@ pub(super) fn still_life(canvas: &mut Canvas) {
     for (reflect, front_face) in [(mirror, Winding::Clockwise), (DMat4::IDENTITY, Winding::CounterClockwise)]
     {
         if front_face == Winding::CounterClockwise {
-            draw_board(canvas, &view, &stood);
+            draw_board(canvas, &view, &stood, knobs.number("opacity"));
         }
         for ((model, texture, _, _, tint), (world_from_model, _)) in PIECES.iter().zip(&stood) {
             let texture = MipMaps::new(&assets::texture(texture).expect("an asset"));
@@ -239,9 +278,9 @@ pub(super) fn still_life(canvas: &mut Canvas) {
     }
 }
 
-fn draw_board(canvas: &mut Canvas, view: &View, stood: &[(DMat4, Vec<Ball>)]) {
+fn draw_board(canvas: &mut Canvas, view: &View, stood: &[(DMat4, Vec<Ball>)], opacity: f64) {
     let balls = stood.iter().flat_map(|(_, balls)| balls.clone()).collect();
-    let board = Board { view: view.clone(), texture: MipMaps::new(&squares()), balls };
+    let board = Board { view: view.clone(), texture: MipMaps::new(&squares()), balls, opacity };
     let far = 60.0;
     let corners = vec![[-far, -far], [far, -far], [far, far], [-far, far]];
     let state = RenderState {

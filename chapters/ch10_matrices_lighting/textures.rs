@@ -3,12 +3,36 @@
 use std::f64::consts::TAU;
 
 use glam::{DMat4, DVec3, dvec3};
-use rasterbook::figure::{Canvas, assets};
+use rasterbook::figure::{Canvas, Knob, assets};
 use rasterbook::mipmap::MipMaps;
 use rasterbook::texture::{AddressMode, Texture};
 use rasterbook::transform::{Frustum, look_at};
 use rasterbook::varyings::Derivatives;
 use rasterbook::{ClipVertex, Color, Mesh, Real, RenderState, Shaded, Shader};
+
+const HEIGHT: Knob = Knob::number(
+    "height",
+    2.0,
+    [0.8, 8.0],
+    "",
+    "the eye comes down to the floor: seen at a flat angle it gets noisy or blurred already near by",
+);
+const BIAS: Knob = Knob::number(
+    "bias",
+    0.0,
+    [-3.0, 3.0],
+    "levels",
+    "added to the level of detail: below 0 the noise comes back, above 0 all is blurred",
+);
+pub(super) const EYE: &[Knob] = &[HEIGHT];
+pub(super) const EYE_AND_BIAS: &[Knob] = &[HEIGHT, BIAS];
+pub(super) const COPIES: &[Knob] = &[Knob::number(
+    "size",
+    1.8,
+    [0.5, 3.6],
+    "",
+    "that of a copy: the smaller, the more copies; the clamped floor has one at any size",
+)];
 
 /// How a color is made of texels.
 #[derive(Clone, Copy)]
@@ -31,6 +55,8 @@ struct Floor {
     maps: MipMaps,
     filter: Filter,
     mode: AddressMode,
+    /// By how many levels the copies are taken too coarse.
+    bias: f64,
 }
 
 impl Shader<2> for Floor {
@@ -51,7 +77,10 @@ impl Shader<2> for Floor {
     }
 
     fn fragment_with_derivatives<R: Real>(&self, uv: [R; 2], change: Derivatives<R, 2>) -> Shaded<R> {
-        let level = self.maps.level_of_detail(change.dx, change.dy);
+        // A change that is twice as large asks for the next level.
+        let larger = R::of(libm::exp2(self.bias));
+        let [dx, dy] = [change.dx, change.dy].map(|way| way.map(|change| change * larger));
+        let level = self.maps.level_of_detail(dx, dy);
         Shaded::opaque(match self.filter {
             Filter::Nearest => self.texture.nearest(uv, self.mode),
             Filter::Bilinear => self.texture.bilinear(uv, self.mode),
@@ -89,42 +118,42 @@ fn floor(canvas: &mut Canvas, shader: &Floor, [left, right]: [f64; 2], uv: impl 
     canvas.draw(&Mesh::indexed(vertices, vec![0, 1, 2, 0, 2, 3]).expect("two triangles"), shader, &sky());
 }
 
-fn shader(texture: &str, filter: Filter, mode: AddressMode) -> Floor {
+fn shader(clip_from_world: DMat4, texture: &str, filter: Filter, mode: AddressMode) -> Floor {
     let texture = assets::texture(texture).expect("an asset");
-    let clip_from_world = camera(dvec3(0.0, 2.0, -6.0), dvec3(0.6, 1.0, 0.0));
-    Floor { clip_from_world, maps: MipMaps::new(&texture), texture, filter, mode }
+    Floor { clip_from_world, maps: MipMaps::new(&texture), texture, filter, mode, bias: 0.0 }
 }
 
 /// Bricks to the horizon.
-fn bricks(canvas: &mut Canvas, filter: Filter) {
+fn bricks(canvas: &mut Canvas, filter: Filter, bias: f64) {
     canvas.clear(&sky());
-    let shader = shader("bricks.png", filter, AddressMode::Repeat);
+    let clip_from_world = camera(dvec3(0.0, canvas.knobs.number("height"), -6.0), dvec3(0.6, 1.0, 0.0));
+    let shader = Floor { bias, ..shader(clip_from_world, "bricks.png", filter, AddressMode::Repeat) };
     floor(canvas, &shader, [-300.0, 300.0], |x, z| [x / 4.0, z / 4.0]);
 }
 
 /// The nearest texel.
 pub(super) fn nearest(canvas: &mut Canvas) {
-    bricks(canvas, Filter::Nearest);
+    bricks(canvas, Filter::Nearest, 0.0);
 }
 
 /// Four texels.
 pub(super) fn bilinear(canvas: &mut Canvas) {
-    bricks(canvas, Filter::Bilinear);
+    bricks(canvas, Filter::Bilinear, 0.0);
 }
 
 /// Four texels of one copy.
 pub(super) fn mipmapped(canvas: &mut Canvas) {
-    bricks(canvas, Filter::Mipmapped);
+    bricks(canvas, Filter::Mipmapped, canvas.knobs.number("bias"));
 }
 
 /// Four texels of two copies each.
 pub(super) fn trilinear(canvas: &mut Canvas) {
-    bricks(canvas, Filter::Trilinear);
+    bricks(canvas, Filter::Trilinear, canvas.knobs.number("bias"));
 }
 
 /// Which copy is where.
 pub(super) fn mip_levels(canvas: &mut Canvas) {
-    bricks(canvas, Filter::Levels);
+    bricks(canvas, Filter::Levels, canvas.knobs.number("bias"));
 }
 
 // ANCHOR: address_modes
@@ -132,12 +161,13 @@ pub(super) fn mip_levels(canvas: &mut Canvas) {
 /// little in front of us.
 pub(super) fn address_modes(canvas: &mut Canvas) {
     canvas.clear(&sky());
+    let size = canvas.knobs.number("size");
+    let clip_from_world = camera(dvec3(0.0, 4.5, -6.0), dvec3(0.0, 0.0, 2.6));
     let modes = [AddressMode::Clamp, AddressMode::Repeat, AddressMode::Mirror];
     for (i, mode) in (0..).zip(modes) {
         let left = -6.2 + 4.2 * f64::from(i);
-        let clip_from_world = camera(dvec3(0.0, 4.5, -6.0), dvec3(0.0, 0.0, 2.6));
-        let shader = Floor { clip_from_world, ..shader("letters.png", Filter::Trilinear, mode) };
-        floor(canvas, &shader, [left, left + 3.8], |x, z| [(x - left - 1.1) / 1.8, (z + 0.6) / 1.8]);
+        let shader = shader(clip_from_world, "letters.png", Filter::Trilinear, mode);
+        floor(canvas, &shader, [left, left + 3.8], |x, z| [(x - left - 1.1) / size, (z + 0.6) / size]);
     }
 }
 // ANCHOR_END: address_modes

@@ -2,7 +2,7 @@
 
 use std::array::from_fn;
 
-use glam::{DMat4, DVec3, dvec3};
+use glam::{DMat4, DVec3};
 use rasterbook::cull::CullMode;
 use rasterbook::figure::{Canvas, Knob, Subject};
 use rasterbook::light::{blinn_phong, lambert, normalize};
@@ -15,6 +15,7 @@ use rasterbook::varyings::Derivatives;
 use rasterbook::{ClipVertex, Color, Framebuffer, Real, Rect, RenderState, Shaded, Shader};
 
 use super::degrees;
+use super::directions::{direction, light_azimuth, light_elevation};
 
 pub(super) const KNOBS: &[Knob] = &[
     Knob::number(
@@ -25,14 +26,8 @@ pub(super) const KNOBS: &[Knob] = &[
         "the eye goes round: a highlight wanders over the surface, the dark side stays where it is",
     ),
     Knob::number("elevation", 25.0, [-89.0, 89.0], "°", "the eye goes up: the top comes into view"),
-    Knob::number(
-        "light-azimuth",
-        -30.0,
-        [-180.0, 180.0],
-        "°",
-        "the light goes round: faces turn dark one after the other",
-    ),
-    Knob::number("light-elevation", 50.0, [-90.0, 90.0], "°", "the light goes up: at 90 the sides get none"),
+    light_azimuth(-30.0),
+    light_elevation(50.0),
     Knob::number("exponent", 40.0, [1.0, 200.0], "", "the highlight becomes small and sharp"),
     Knob::color(
         "background",
@@ -45,12 +40,6 @@ pub(super) const KNOBS: &[Knob] = &[
 const LAMP: f64 = 0.95;
 const SKY: f64 = 0.26;
 const GROUND: f64 = 0.09;
-
-/// The direction of an azimuth and an elevation: 0, 0 is towards the reader; to the right, then up.
-fn direction(azimuth: f64, elevation: f64) -> DVec3 {
-    let [(sin_a, cos_a), (sin_e, cos_e)] = [azimuth, elevation].map(|angle| libm::sincos(degrees(angle)));
-    dvec3(cos_e * sin_a, sin_e, -cos_e * cos_a)
-}
 
 /// The camera that sees all of a sphere, and where it is.
 fn camera(center: DVec3, radius: f64, towards: DVec3) -> (DMat4, DVec3) {

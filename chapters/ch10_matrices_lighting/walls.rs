@@ -1,7 +1,7 @@
 //! Normals from a picture: a flat wall whose bricks stand out.
 
 use glam::{DMat4, DVec3, dvec3};
-use rasterbook::figure::{Canvas, assets};
+use rasterbook::figure::{Canvas, Knob, assets};
 use rasterbook::light::{Highlight, Light, Material, mapped_normal, normalize};
 use rasterbook::texture::{AddressMode, Texture};
 use rasterbook::transform::{Frustum, normal_matrix, rotate_x_to_z, translate};
@@ -9,9 +9,31 @@ use rasterbook::{ClipVertex, Color, Mesh, Real, RenderState, Shaded, Shader};
 
 use super::degrees;
 
+pub(super) const KNOBS: &[Knob] = &[
+    Knob::number(
+        "strength",
+        1.0,
+        [-2.0, 3.0],
+        "",
+        "of the map: at 0 the right wall is flat too, below 0 its bricks lie deeper than the joints",
+    ),
+    Knob::number(
+        "lamp-x",
+        0.0,
+        [-1.5, 1.5],
+        "",
+        "the lamp moves to the right: the bright side of each brick is where the lamp is",
+    ),
+    Knob::number(
+        "lamp-y",
+        0.5,
+        [-1.2, 1.2],
+        "",
+        "the lamp moves up: upper and lower borders of the bricks change their brightness",
+    ),
+];
+
 const CAMERA: Frustum = Frustum { left: -1.6, right: 1.6, bottom: -1.2, top: 1.2, near: 2.0, far: 20.0 };
-/// The lamp, in camera space.
-const LAMP: Light = Light::Point { position: [0.0, 0.5, 2.4], intensity: 3.4 };
 const CLAY: Material = Material {
     ambient: 0.12,
     diffuse: 0.9,
@@ -28,14 +50,19 @@ struct Wall {
     axes: [DVec3; 3],
     colors: Texture,
     normals: Texture,
+    /// How far the map makes normals lean: 1 as it says.
+    strength: f64,
+    /// In camera space.
+    lamp: Light,
 }
 
 impl Wall {
-    fn new(view_from_model: DMat4, normals: Texture) -> Self {
+    fn new(view_from_model: DMat4, normals: Texture, strength: f64, lamp: Light) -> Self {
         let turn = normal_matrix(view_from_model);
         // The wall lies in the plane of x and y and turns its front to −z, to us.
         let axes = [DVec3::X, DVec3::Y, DVec3::NEG_Z].map(|axis| (turn * axis).normalize());
-        Self { view_from_model, axes, colors: assets::texture("bricks.png").expect("an asset"), normals }
+        let colors = assets::texture("bricks.png").expect("an asset");
+        Self { view_from_model, axes, colors, normals, strength, lamp }
     }
 }
 
@@ -55,11 +82,13 @@ impl Shader<5> for Wall {
     fn fragment<R: Real>(&self, [x, y, z, u, v]: [R; 5]) -> Shaded<R> {
         let place = [x, y, z];
         let uv = [u * R::of(0.5), v * R::of(0.5)];
-        let axes = self.axes.map(|axis| axis.to_array().map(R::of));
+        let [tangent, bitangent, upright] = self.axes;
+        let axes = [tangent * self.strength, bitangent * self.strength, upright];
+        let axes = axes.map(|axis| axis.to_array().map(R::of));
         let normal = mapped_normal(self.normals.bilinear(uv, AddressMode::Repeat), axes);
         let color = self.colors.bilinear(uv, AddressMode::Repeat);
         let to_eye = normalize(place.map(|coordinate| -coordinate));
-        Shaded::opaque(CLAY.shade(color, normal, LAMP.at(place), to_eye))
+        Shaded::opaque(CLAY.shade(color, normal, self.lamp.at(place), to_eye))
     }
 }
 // ANCHOR_END: wall
@@ -68,12 +97,14 @@ impl Shader<5> for Wall {
 pub(super) fn normal_mapped(canvas: &mut Canvas) {
     let state = RenderState { clear_color: Color::gray(20), ..RenderState::default() };
     canvas.clear(&state);
+    let [strength, x, y] = ["strength", "lamp-x", "lamp-y"].map(|name| canvas.knobs.number(name));
+    let lamp = Light::Point { position: [x, y, 2.4], intensity: 3.4 };
     let straight_up = Texture::new(1, 1, vec![Color::rgb(128, 128, 255)]);
     let mapped = assets::texture("bricks-normals.png").expect("an asset");
     for (side, normals) in [(-1.0, straight_up), (1.0, mapped)] {
         let place = translate(dvec3(1.52 * side, 0.0, 4.0)) * rotate_x_to_z(degrees(-25.0 * side));
         let corners = vec![[-1.5, -1.6], [1.5, -1.6], [1.5, 1.6], [-1.5, 1.6]];
         let mesh = Mesh::indexed(corners, vec![0, 1, 2, 0, 2, 3]).expect("two triangles");
-        canvas.draw(&mesh, &Wall::new(place, normals), &state);
+        canvas.draw(&mesh, &Wall::new(place, normals, strength, lamp), &state);
     }
 }
