@@ -530,8 +530,8 @@ fn knobs_are_set_swept_and_listed() {
     let folder = folder("knobs");
     let listed = text(&last(&folder, &["turntable", "--knobs"]).stdout);
     assert!(listed.contains("  azimuth = 35   (a number, -180 to 180 °)\n"), "{listed}");
-    let none = text(&last(&folder, &["still-life", "--knobs"]).stdout);
-    assert_eq!(none, "'still-life' has no knobs\n");
+    let none = text(&run_in(&folder, &["facing", "--knobs"]).stdout);
+    assert_eq!(none, "'facing' has no knobs\n");
 
     // Every way to say the same draws the same; what is set stands in the name.
     let small = ["turntable", "--size", "64x48"];
@@ -567,7 +567,7 @@ fn knobs_that_there_are_not_are_refused_with_those_that_there_are() {
         (&["turntable", "--background", "red"], "'background' cannot be 'red': it is a color, #RRGGBB"),
         (&["turntable", "--sweep", "background"], "it has no range to be swept"),
         (&["turntable", "--sweep", "tilt"], "there is no knob 'tilt'"),
-        (&["still-life", "--eye", "1,2"], "'still-life' has no knobs"),
+        (&["rotation", "--eye", "1,2"], "'rotation': there is no knob 'azimuth'"),
         (&["--all", "--set", "azimuth=1"], "cannot be used with"),
     ];
     for (arguments, reason) in cases {

@@ -41,6 +41,7 @@ const LAMP: f64 = 0.95;
 const SKY: f64 = 0.26;
 const GROUND: f64 = 0.09;
 
+// ANCHOR: eye
 /// The camera that sees all of a sphere, and where it is.
 fn camera(center: DVec3, radius: f64, towards: DVec3) -> (DMat4, DVec3) {
     const FIELD_OF_VIEW: f64 = 32.0;
@@ -55,6 +56,7 @@ fn camera(center: DVec3, radius: f64, towards: DVec3) -> (DMat4, DVec3) {
     );
     (frustum.matrix() * look_at(eye, center, DVec3::Y), eye)
 }
+// ANCHOR_END: eye
 
 /// A surface under a lamp and a sky.
 struct Surface<'a> {

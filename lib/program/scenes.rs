@@ -9,12 +9,14 @@ use super::arguments::Request;
 use super::failure::Failure;
 use super::options::knob_list;
 use super::output::note;
-use crate::figure::picture::{Zoom, difference};
+use crate::color::Color;
+use crate::figure::picture::Zoom;
 use crate::figure::{DrawOptions, Given, Knob, KnobError, RasterizerChoice, Scene, Subject, Variant};
 use crate::files::{FileError, load_texture, shown};
 use crate::framebuffer::Framebuffer;
 use crate::model::Model;
 use crate::rect::{Pixel, Rect};
+use crate::texture::Texture;
 
 /// A variant as it was asked for: what it is a picture of, its size, its rasterizer, its knobs, its frame.
 pub(super) fn scene_of<'a>(
@@ -150,9 +152,13 @@ pub(super) fn check_inside((width, height): (u32, u32), (x, y): Pixel) -> Result
 /// If the picture shows nothing of the model: that it does not, and why.
 pub(super) fn unseen(path: &Path, scene: &Scene<'_>, picture: &Framebuffer) -> Option<String> {
     let subject = scene.subject.as_ref()?;
-    let without = Subject { model: Model { parts: Vec::new() }, texture: None };
-    let empty = scene.variant.draw(&DrawOptions { subject: Some(&without), ..scene.options(None) });
-    if difference(picture, &empty).is_none_or(|(_, count)| count > 0) {
+    let drawn = |model: Model| {
+        // White, so that what is as dark as the background counts as seen.
+        let texture = Some(Texture::new(1, 1, vec![Color::WHITE]));
+        scene.variant.draw(&DrawOptions { subject: Some(&Subject { model, texture }), ..scene.options(None) })
+    };
+    let empty = drawn(Model { parts: Vec::new() });
+    if *picture != empty || drawn(subject.model.clone()) != empty {
         return None;
     }
     let meshes = || subject.model.parts.iter().map(|part| &part.mesh);
