@@ -49,6 +49,7 @@
 //! | `files` | models and textures from files, pictures into files |
 //! | `figure` | the chapters' figures: their tables, the canvas, the history of a pixel; with `files` |
 //! | `program` | what the eleven programs share: arguments, animations; with `figure` |
+//! | `window` | a live window, `--window`; with `program` |
 //!
 //! `program` and `tiled` are on by default; a renderer in a program of your own needs neither:
 //! `rasterbook = { version = "0.1", default-features = false, features = ["files"] }`.

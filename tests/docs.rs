@@ -198,3 +198,34 @@ fn commands_name_programs_and_variants_that_exist() {
     }
     assert!(count > 15, "{count} commands");
 }
+
+/// The animations of the README, and what drew them.
+const ANIMATIONS: [(&str, &str, &str); 2] = [
+    (
+        "turntable.gif",
+        "ch10_matrices_lighting",
+        "turntable --model assets/pawn.obj --texture assets/wood.png --animate --size 128x96",
+    ),
+    ("pieces.gif", "ch05_perspective_correct", "floor-affine --sweep pieces --compare --size 240x180"),
+];
+
+#[test]
+fn animations_are_what_the_programs_draw() {
+    for (name, program, arguments) in ANIMATIONS {
+        let (_, path) = CHAPTERS.iter().find(|(chapter, _)| chapter.name == program).expect("a program");
+        let drawn = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+        let run = std::process::Command::new(path)
+            .args(arguments.split(' '))
+            .arg("--out")
+            .arg(&drawn)
+            .current_dir(root())
+            .status();
+        assert!(run.expect("it starts").success());
+        let is_same = fs::read(&drawn).expect("drawn")
+            == fs::read(root().join("docs/images").join(name)).expect("there");
+        assert!(
+            is_same,
+            "docs/images/{name} is old: cargo run --bin {program} -- {arguments} --out docs/images/{name}"
+        );
+    }
+}

@@ -17,7 +17,7 @@ pub(super) fn unnamed<'a>(chapter: &'a Chapter, request: &Request) -> &'a Varian
     chapter.variants.iter().find(accepts).unwrap_or_else(|| chapter.lead())
 }
 
-/// For those who have named no variant: what is seen, what to compare it with, and how to ask a pixel.
+/// For those who have named no variant: what is seen, what to compare it with, how to ask a pixel, and how to see it live.
 pub(super) fn hints(chapter: &Chapter, drawn: &Variant) -> String {
     let Variant { name, look, size: (width, height), .. } = drawn;
     let run = format!("cargo run --bin {} --", chapter.name);
@@ -27,7 +27,11 @@ pub(super) fn hints(chapter: &Chapter, drawn: &Variant) -> String {
         None => format!("What else can be drawn: {run} --list"),
     };
     let pixel = format!("{},{}", width / 2, height / 2);
-    format!("{name}: {look}\n{compare}\nWhat happened at a pixel: {run} {name} --inspect {pixel}")
+    let live = format!("cargo run --features window --bin {} -- {name} --window", chapter.name);
+    format!(
+        "{name}: {look}\n{compare}\nWhat happened at a pixel: {run} {name} --inspect {pixel}\n\
+         Live, to turn and to drag: {live}"
+    )
 }
 
 pub(super) fn find<'a>(chapter: &'a Chapter, name: &str) -> Result<&'a Variant, Failure> {
@@ -118,7 +122,8 @@ mod tests {
             hints(&with_mistake, with_mistake.lead()),
             "right: what is right\n\
              A mistake beside its remedy: cargo run --bin ch00 -- wrong --compare\n\
-             What happened at a pixel: cargo run --bin ch00 -- right --inspect 320,240"
+             What happened at a pixel: cargo run --bin ch00 -- right --inspect 320,240\n\
+             Live, to turn and to drag: cargo run --features window --bin ch00 -- right --window"
         );
         assert_eq!(
             no_such_variant(&with_mistake, "wring"),
