@@ -90,6 +90,16 @@ fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
 }
 
+#[test]
+fn a_history_tells_which_knobs_were_turned() {
+    let variant = variant("ch05_perspective_correct", "affine");
+    let mut options = variant.options(None);
+    options.knobs.set("tilt=60").expect("in range");
+    let history = history("ch05_perspective_correct", variant, &options, (20, 120));
+    assert!(history.to_string().starts_with("ch05_perspective_correct affine tilt=60\n"), "{history}");
+    assert_eq!(json(&history)["knobs"], serde_json::json!(["tilt=60"]));
+}
+
 fn json(history: &History) -> Value {
     serde_json::from_str(&history.to_json()).expect("JSON")
 }

@@ -32,7 +32,8 @@ struct Findings {
 #[must_use]
 pub fn history(program: &'static str, variant: &Variant, options: &DrawOptions<'_>, pixel: Pixel) -> History {
     let Recording { events, picture, frame } = Recording::new(variant, options, Some(pixel));
-    History { program, variant: variant.name, frame, ..History::of(&events, &picture, pixel) }
+    let knobs = options.knobs.changed();
+    History { program, variant: variant.name, frame, knobs, ..History::of(&events, &picture, pixel) }
 }
 
 /// The histories of several pixels; the picture is drawn once.
@@ -43,8 +44,13 @@ pub fn histories(
     pixels: impl IntoIterator<Item = Pixel>,
 ) -> Vec<History> {
     let Recording { events, picture, frame } = Recording::new(variant, options, None);
-    let history =
-        |pixel| History { program, variant: variant.name, frame, ..History::of(&events, &picture, pixel) };
+    let history = |pixel| History {
+        program,
+        variant: variant.name,
+        frame,
+        knobs: options.knobs.changed(),
+        ..History::of(&events, &picture, pixel)
+    };
     pixels.into_iter().map(history).collect()
 }
 
@@ -64,7 +70,8 @@ impl History {
             entries.push(Entry::new("replaced", title));
         }
         let row = picture.height() as i32 - 1 - pixel.1;
-        Self { program: "", variant: "", frame: None, pixel, row, entries, others, color, last_color }
+        let (frame, knobs) = (None, Vec::new());
+        Self { program: "", variant: "", frame, knobs, pixel, row, entries, others, color, last_color }
     }
 }
 

@@ -65,6 +65,8 @@ pub struct History {
     pub(super) program: &'static str,
     pub(super) variant: &'static str,
     pub(super) frame: Option<u32>,
+    /// Knobs that do not stand at their defaults, as NAME=VALUE.
+    pub(super) knobs: Vec<String>,
     /// The pixel, y up.
     pub(super) pixel: Pixel,
     /// Its row in the image file, 0 on top.
@@ -108,7 +110,8 @@ impl fmt::Display for History {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (x, y) = self.pixel;
         let frame = self.frame.map_or_else(String::new, |frame| format!(", frame {frame}"));
-        writeln!(f, "{} {}{frame}", self.program, self.variant)?;
+        let knobs: String = self.knobs.iter().map(|knob| format!(" {knob}")).collect();
+        writeln!(f, "{} {}{knobs}{frame}", self.program, self.variant)?;
         writeln!(f, "pixel ({x}, {y}), y up; row {} of the image file", self.row)?;
         for entry in &self.entries {
             write_entry(f, entry)?;
@@ -224,10 +227,11 @@ impl History {
         let frame = self.frame.map_or_else(|| "null".to_owned(), |frame| frame.to_string());
         let _ = write!(
             json,
-            "{{\n  \"program\": {},\n  \"variant\": {},\n  \"frame\": {frame},\n  \"pixel\": [{}, {}],\n  \
+            "{{\n  \"program\": {},\n  \"variant\": {},\n  \"frame\": {frame},\n  \"knobs\": [{}],\n  \"pixel\": [{}, {}],\n  \
              \"row\": {},\n  \"events\": [{}],\n  \"others\": [{}],\n  \"color\": {}\n}}",
             text_json(self.program),
             text_json(self.variant),
+            self.knobs.iter().map(|knob| text_json(knob)).collect::<Vec<_>>().join(", "),
             self.pixel.0,
             self.pixel.1,
             self.row,
