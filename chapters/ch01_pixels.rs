@@ -62,8 +62,9 @@ const PIXEL: &[Knob] = &[
 // ANCHOR: pixel
 /// One pixel: where and in which color, the knobs say.
 fn pixel(framebuffer: &mut Framebuffer, knobs: &Knobs) {
-    let place = knobs.point("place");
-    framebuffer.set(place.x as i32, place.y as i32, knobs.color("color"));
+    let (place, color) = (knobs.point("place"), knobs.color("color"));
+    let (x, y) = (place.x as i32, place.y as i32);
+    framebuffer.set(x, y, color);
 }
 // ANCHOR_END: pixel
 

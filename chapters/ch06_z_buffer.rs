@@ -119,9 +119,6 @@ fn vertex([x, y, z]: [f64; 3], [u, v]: [f64; 2]) -> ScreenVertex<Projected<f64, 
 
 /// x and z of the right side of a square of side 480, whose left side is at x = 0 and z = 100.
 fn tilted_side(degrees: f64) -> [f64; 2] {
-    if degrees == 30.0 {
-        return [415.692193816530, 340.0]; // the book's numbers
-    }
     let (sin, cos) = libm::sincos(degrees * PI / 180.0);
     [480.0 * cos, 100.0 + 480.0 * sin]
 }

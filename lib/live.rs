@@ -12,7 +12,7 @@
 use glam::{DVec2, dvec2};
 
 use crate::color::Color;
-use crate::figure::picture::{Zoom, blocks, difference, paste};
+use crate::figure::picture::{Zoom, difference, fill_blocks};
 use crate::figure::{Chapter, Fit, Given, Knob, Mistake, RasterizerChoice, Scene, Value, Variant};
 use crate::files::FileError;
 use crate::framebuffer::Framebuffer;
@@ -30,13 +30,15 @@ pub enum Event {
     NextKnob(i32),
     /// Turns the knob that is held by so many steps.
     Turn(i32),
-    /// Sets all knobs to their defaults, the first frame and no magnification.
+    /// Sets all knobs to their defaults, shows the first frame, and magnifies nothing.
     Reset,
     /// Shows another view, or the variant itself if that view is shown already.
     Show(View),
-    /// Lets the animation run, or the knob that is held go to and fro through its range; or stops it.
+    /// Lets the animation run, or the knob that is held where there is none; or stops what runs.
     Run,
-    /// Shows one step more of what runs. Whoever shows the picture sends it [`Live::rate`] times a second.
+    /// Lets the knob that is held go to and fro through its range; or stops what runs.
+    Sweep,
+    /// Shows one step more of what runs: to be sent [`Live::rate`] times a second.
     Tick,
     /// Draws with the next rasterizer, where there is a choice.
     NextRasterizer,
@@ -67,8 +69,8 @@ pub enum View {
 /// What a button holds while it is down.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Held {
-    /// A point, by its index among the knobs.
-    Point(usize),
+    /// A point, by its index among the knobs, and how far from the pointer it is.
+    Point(usize, DVec2),
     /// The model: where the pointer was.
     Model(Pixel),
     /// Nothing that can be moved.
@@ -139,8 +141,14 @@ impl<'a> Live<'a> {
     /// Takes hold of the knob of a name, if there is one.
     pub fn take_knob(&mut self, name: &str) {
         if let Some(index) = self.scene.variant.knobs.iter().position(|knob| knob.name == name) {
-            self.knob = index;
+            self.take(index);
         }
+    }
+
+    /// Takes hold of a knob; the one that was on its way stops.
+    fn take(&mut self, index: usize) {
+        self.knob = index;
+        self.motion = self.motion.filter(|motion| *motion == Motion::Frames);
     }
 
     /// How often in a second something moves by itself; `None` if nothing does.
@@ -173,19 +181,19 @@ impl<'a> Live<'a> {
                 return self.look_at(moved(self.place(), places, count));
             }
             Event::NextKnob(places) => {
-                self.knob = moved(self.knob, places, self.scene.variant.knobs.len());
-                self.motion = self.motion.filter(|motion| *motion == Motion::Frames);
+                self.take(moved(self.knob, places, self.scene.variant.knobs.len()));
                 return Ok(false);
             }
             Event::Turn(steps) => self.turn(steps),
             Event::Reset => self.reset(),
             Event::Show(view) => self.show(view),
-            Event::Run => self.run(),
+            Event::Run if self.scene.variant.animation.is_some() => self.run(Motion::Frames),
+            Event::Run | Event::Sweep => self.run(Motion::Sweep(0)),
             Event::Tick => self.tick(),
             Event::NextRasterizer => self.next_rasterizer(),
             Event::Magnify(notches, pixel) => self.magnify(notches, pixel),
             Event::Press(pixel) => self.press(pixel),
-            Event::Drag(pixel) => self.drag(pixel),
+            Event::Drag(pixel) => return Ok(self.drag(pixel)),
             Event::Release => self.held = None,
         }
         Ok(!matches!(event, Event::Press(_) | Event::Release))
@@ -231,14 +239,9 @@ impl<'a> Live<'a> {
             if self.view == view || (needs_remedy && self.remedy().is_none()) { View::Itself } else { view };
     }
 
-    fn run(&mut self) {
-        let can_sweep = self.knob().is_some_and(|(knob, _)| knob.at(0.0).is_some());
-        self.motion = match self.motion {
-            Some(_) => None,
-            None if self.scene.variant.animation.is_some() => Some(Motion::Frames),
-            None if can_sweep => Some(Motion::Sweep(0)),
-            None => None,
-        };
+    fn run(&mut self, motion: Motion) {
+        let can_run = motion == Motion::Frames || self.knob().is_some_and(|(knob, _)| knob.at(0.0).is_some());
+        self.motion = (self.motion.is_none() && can_run).then_some(motion);
     }
 
     fn tick(&mut self) {
@@ -287,32 +290,38 @@ impl<'a> Live<'a> {
             return;
         };
         let place = self.in_scene(pixel);
-        let distance = |value: Value| match value {
-            Value::Point(point) => Some(point.distance(place)),
+        let offset = |value: Value| match value {
+            Value::Point(point) => Some(point - place),
             _ => None,
         };
         let points = self.scene.knobs.iter().enumerate();
-        let near = points.filter_map(|(index, (_, value))| Some((index, distance(value)?)));
-        let nearest = near.min_by(|(_, a), (_, b)| a.total_cmp(b));
+        let near = points.filter_map(|(index, (_, value))| Some((index, offset(value)?)));
+        let nearest = near.min_by(|(_, a), (_, b)| a.length().total_cmp(&b.length()));
         let reach = f64::from(self.scene.variant.size.0) / 20.0;
         self.held = Some(match nearest {
-            Some((index, distance)) if distance <= reach => {
-                self.knob = index;
-                Held::Point(index)
+            Some((index, offset)) if offset.length() <= reach => {
+                self.take(index);
+                Held::Point(index, offset)
             }
-            _ if self.scene.knobs.find("azimuth").is_some() => Held::Model(pixel),
+            _ if self.scene.knobs.find("azimuth").is_some() => {
+                self.take_knob("azimuth");
+                Held::Model(pixel)
+            }
             _ => Held::Nothing,
         });
     }
 
-    fn drag(&mut self, pixel: Pixel) {
-        let Some(pixel) = self.pixel_at(pixel) else {
-            return;
+    /// Moves what is held, as far as the border. Gives whether anything is.
+    fn drag(&mut self, (x, y): Pixel) -> bool {
+        let (width, height) = self.scene.size;
+        let Some(pixel) = self.pixel_at((x.clamp(0, width as i32 - 1), y.clamp(0, height as i32 - 1))) else {
+            return false;
         };
         match self.held {
-            Some(Held::Point(index)) => {
+            Some(Held::Point(index, offset)) => {
                 let name = self.scene.variant.knobs[index].name;
-                self.scene.knobs.put(name, Value::Point(self.in_scene(pixel)));
+                self.scene.knobs.put(name, Value::Point(self.in_scene(pixel) + offset));
+                true
             }
             Some(Held::Model(from)) => {
                 let by = dvec2(f64::from(pixel.0 - from.0), f64::from(pixel.1 - from.1)) * DEGREES_PER_PIXEL;
@@ -320,8 +329,9 @@ impl<'a> Live<'a> {
                 self.orbit("azimuth", -by.x, true);
                 self.orbit("elevation", -by.y, false);
                 self.held = Some(Held::Model(pixel));
+                true
             }
-            Some(Held::Nothing) | None => {}
+            Some(Held::Nothing) | None => false,
         }
     }
 
@@ -361,6 +371,13 @@ impl<'a> Live<'a> {
         (Zoom { factor, center: Some(self.center) }.part_within(self.whole(), room), factor)
     }
 
+    /// How the part that is shown is magnified, if it is.
+    #[must_use]
+    pub fn zoom(&self) -> Option<Zoom> {
+        let factor = FACTORS[self.magnification];
+        (factor > 1).then_some(Zoom { factor, center: Some(self.center) })
+    }
+
     /// Which pixel of the scene's picture a pixel of the picture that is shown belongs to; `None` outside of it.
     #[must_use]
     pub fn pixel_at(&self, (x, y): Pixel) -> Option<Pixel> {
@@ -380,29 +397,35 @@ impl<'a> Live<'a> {
     /// The whole picture, not magnified.
     #[must_use]
     pub fn whole_picture(&self) -> Framebuffer {
-        match (self.view, self.remedied()) {
-            (View::Overdraw, _) => Steps::new(self.scene.variant, &self.scene.options(None)).overdraw().0,
-            (View::Remedy, Some(remedied)) => remedied.draw(),
-            (View::Difference, Some(remedied)) => {
+        match self.view {
+            View::Itself => self.scene.draw(),
+            View::Overdraw => Steps::new(self.scene.variant, &self.scene.options(None)).overdraw().0,
+            View::Remedy => self.remedied().map_or_else(|| self.scene.draw(), |remedied| remedied.draw()),
+            View::Difference => {
                 let this = self.scene.draw();
-                difference(&this, &remedied.draw()).map_or(this, |(marked, _)| marked)
+                let marked = self.remedied().and_then(|remedied| difference(&this, &remedied.draw()));
+                marked.map_or(this, |(marked, _)| marked)
             }
-            _ => self.scene.draw(),
         }
     }
 
-    /// What is shown: the picture, or a part of it with large pixels and a grid, which has the same size.
+    /// What is shown of the whole picture: all of it, or a part with large pixels and a grid, in the same size.
     #[must_use]
-    pub fn picture(&self) -> Framebuffer {
-        let whole = self.whole_picture();
+    pub fn shown(&self, whole: Framebuffer) -> Framebuffer {
         match self.part() {
             (_, 1) => whole,
             (part, factor) => {
                 let mut shown = Framebuffer::new(whole.width(), whole.height());
-                paste(&mut shown, &blocks(&whole, part, factor), 0, 0);
+                fill_blocks(&mut shown, &whole, part, factor);
                 shown
             }
         }
+    }
+
+    /// What is shown.
+    #[must_use]
+    pub fn picture(&self) -> Framebuffer {
+        self.shown(self.whole_picture())
     }
 
     /// All that happened at a pixel of the scene's picture; of the remedy's, if that is shown.
@@ -413,7 +436,7 @@ impl<'a> Live<'a> {
         history(self.chapter.name, scene.variant, &scene.options(None), pixel).without_misses()
     }
 
-    /// What is shown, in a line: `affine · tilt = 30 ° · 4×`.
+    /// What is shown, in a line: `affine · tilt = 30 · 4×`.
     #[must_use]
     pub fn status(&self) -> String {
         let mut parts = vec![match (self.view, self.remedy()) {
@@ -474,7 +497,7 @@ mod tests {
     }
 
     fn moving(canvas: &mut Canvas) {
-        let level = 10 * canvas.frame as u8;
+        let level = 10 * canvas.frame as u8 + canvas.knobs.whole("more") as u8;
         canvas.picture_mut().clear(Color::gray(level));
     }
 
@@ -486,7 +509,8 @@ mod tests {
             Variant::with_knobs("right", right, KNOBS, "-").size(40, 30),
             Variant::with_pipeline("moving", moving, "-")
                 .size(8, 8)
-                .animated(Animation { frames: 3, rate: 7 }),
+                .animated(Animation { frames: 3, rate: 7 })
+                .knobs(&[Knob::whole("more", 0, [0, 1], "", "-")]),
         ],
     };
 
@@ -524,8 +548,11 @@ mod tests {
 
     #[test]
     fn a_point_is_dragged_and_stays_in_the_picture() {
+        // It was taken one pixel beside it, and stays beside the pointer.
         let events = [Event::Press((5, 7)), Event::Drag((20, 10)), Event::Release, Event::Drag((1, 1))];
-        assert_eq!(seen(&play(live(), &events).picture()).1, Some((21, 10)));
+        assert_eq!(seen(&play(live(), &events).picture()).1, Some((20, 9)));
+        let out = play(live(), &[Event::Press((4, 6)), Event::Drag((500, -9))]);
+        assert_eq!(out.scene.knobs.point("dot"), dvec2(39.0, 0.0), "as far as the border");
         let missed = [Event::Press((30, 20)), Event::Drag((20, 10))];
         assert_eq!(seen(&play(live(), &missed).picture()).1, Some((5, 6)), "nothing was near");
         // At twice the size a pixel is half a unit of the scene.
@@ -577,6 +604,9 @@ mod tests {
         let swept = |ticks: usize| levels(&[vec![Event::Run], vec![Event::Tick; ticks]].concat());
         assert_eq!([swept(1), swept(31), swept(61), swept(91), swept(121)], [0, 120, 240, 120, 0]);
         assert_eq!(play(live(), &[Event::NextKnob(1), Event::Run]).rate(), None, "a point has no range");
+        assert_eq!(play(live(), &[Event::Run, Event::Press((5, 7))]).rate(), None, "a point was taken");
+        let of_frames = [Event::Variant(2), Event::Sweep, Event::Tick, Event::Tick];
+        assert_eq!(seen(&play(live(), &of_frames).picture()).0, 0, "the knob runs, not the frames");
     }
 
     #[test]
@@ -588,6 +618,9 @@ mod tests {
         let (_, white) = seen(&picture);
         assert_eq!(near.pixel_at(white.expect("in the part that is shown")), Some((5, 6)));
         assert_eq!(near.pixel_at((40, 0)), None);
+        let mut wide = live();
+        wide.scene.size = (Framebuffer::MAX_SIDE, 1);
+        assert_eq!(play(wide, &[Event::Magnify(2, (0, 0))]).picture().width(), Framebuffer::MAX_SIDE);
         let again = play(near, &[Event::Magnify(-99, (0, 0))]);
         assert_eq!(again.picture(), live().picture());
         assert!(live().history((5, 6)).to_string().contains("pixel (5, 6)"));

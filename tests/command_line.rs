@@ -201,7 +201,8 @@ fn zoom_and_compare() {
 
     let output =
         run_in(&folder, &["reciprocal", "--compare", "correct", "--zoom", "10@5,5", "--out", "b.png"]);
-    assert_eq!(text(&output.stderr), "0 of 307200 pixels differ\n");
+    let shown = "shown: columns 0 to 127 and rows 0 to 95, y up, each pixel as 10×10";
+    assert_eq!(text(&output.stderr), format!("0 of 307200 pixels differ\n{shown}\n"));
     // Each panel has its own frame.
     assert_eq!(
         image::image_dimensions(folder.join("b.png")).expect("written"),
@@ -359,14 +360,21 @@ fn what_makes_no_sense_is_refused() {
     refused("format", &["--out", "x.jpg"], 2, ".png .bmp .tga .ppm");
     refused("no_format", &["--out", "x.txt"], 2, "'.txt' is no picture format that is written");
     refused("show_nowhere", &["--show"], 2, "--show=blocks prints the picture nevertheless");
-    refused("show_kitty_nowhere", &["affine", "--show=kitty"], 2, "standard output is none");
+    refused("show_kitty_nowhere", &["affine", "--show=kitty"], 2, "standard output is not a terminal");
     refused("show_how", &["--show=ascii"], 2, "auto, blocks, kitty, iterm, sixel");
     refused("show_all", &["--all", "--show=blocks"], 2, "--show");
     refused("show_and_out", &["--show=blocks", "--out", "a.png"], 2, "--out");
     refused("show_steps", &["--show=blocks", "--steps"], 2, "--steps");
     refused("show_inspect", &["--show=blocks", "--inspect", "1,1"], 2, "--inspect");
     refused("show_animate", &["--show=blocks", "--animate"], 2, "--animate");
-    refused("list_and_more", &["affine", "--list"], 2, "--list");
+    refused("list_and_more", &["--all", "--list"], 2, "--list");
+}
+
+#[test]
+fn a_list_of_one_variant_is_its_line() {
+    let list = text(&run_in(&folder("list_of_one"), &["affine", "--list"]).stdout);
+    assert!(list.starts_with("  affine  ") && list.lines().count() == 1, "{list}");
+    assert!(text(&run_in(&folder("list"), &["--list"]).stdout).contains(list[8..].trim()), "{list}");
 }
 
 #[test]
@@ -564,7 +572,7 @@ fn knobs_that_there_are_not_are_refused_with_those_that_there_are() {
         (&["turntable", "--set", "tilt=1"], "there is no knob 'tilt'\nKnobs of 'turntable'"),
         (&["turntable", "--set", "elevation=90"], "'elevation' cannot be '90': it is a number, -89 to 89 °"),
         (&["turntable", "--set", "elevation"], "expected NAME=VALUE"),
-        (&["turntable", "--background", "red"], "'background' cannot be 'red': it is a color, #RRGGBB"),
+        (&["turntable", "--background", "red"], "'background' cannot be 'red': it is a color, RRGGBB"),
         (&["turntable", "--sweep", "background"], "it has no range to be swept"),
         (&["turntable", "--sweep", "tilt"], "there is no knob 'tilt'"),
         (&["rotation", "--eye", "1,2"], "'rotation': there is no knob 'azimuth'"),
@@ -593,4 +601,72 @@ fn a_model_that_is_not_seen_is_told_of() {
     assert!(told("lit", "away.obj").starts_with("nothing of away.obj is visible: its faces turn away"));
     assert!(told("lit", "line.obj").starts_with("nothing of line.obj is visible: its faces have no area"));
     assert_eq!(told("turntable", "away.obj"), "", "it draws both sides");
+}
+
+/// What a run gave: its exit code, what it printed, and the files that it wrote.
+fn outcome(folder: &Path, arguments: &[&str]) -> (Option<i32>, Vec<u8>, Vec<Vec<u8>>) {
+    let _ = std::fs::remove_dir_all(folder);
+    std::fs::create_dir_all(folder).expect("a folder");
+    let output = run_in(folder, arguments);
+    let written: Vec<Vec<u8>> =
+        written_below(folder).iter().map(|path| std::fs::read(path).expect("there")).collect();
+    (output.status.code(), output.stdout, written)
+}
+
+fn written_below(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path());
+    let mut found: Vec<PathBuf> =
+        entries.flat_map(|path| if path.is_dir() { written_below(&path) } else { vec![path] }).collect();
+    found.sort();
+    found
+}
+
+#[test]
+fn of_two_options_both_are_used_or_the_pair_is_refused() {
+    const OPTIONS: &[&[&str]] = &[
+        &["--set", "tilt=60"],
+        &["--size", "24x18"],
+        &["--zoom", "2"],
+        &["--compare"],
+        &["--sweep", "tilt"],
+        &["--steps"],
+        &["--overdraw"],
+        &["--inspect", "0,0"],
+        &["--verbose"],
+        &["--format", "json"],
+        &["--out", "elsewhere/"],
+        &["--show=blocks"],
+        &["--knobs"],
+        &["--list"],
+        &["--all"],
+        &["--window"],
+    ];
+    let folder = folder("pairs");
+    // A small picture of a mistake, where that may be said.
+    let run = |options: &[&[&str]]| {
+        let is_any = |names: &[&str]| options.iter().any(|option| names.contains(&option[0]));
+        let mut arguments: Vec<&str> = options.concat();
+        if !is_any(&["--all", "--list"]) {
+            arguments.insert(0, "affine");
+        }
+        if !is_any(&["--size", "--list", "--knobs"]) {
+            arguments.extend(["--size", "16x12"]);
+        }
+        outcome(&folder, &arguments)
+    };
+    let single: Vec<_> = OPTIONS.iter().map(|option| run(&[option])).collect();
+    let mut accepted = 0;
+    for (i, first) in OPTIONS.iter().enumerate() {
+        for (j, second) in OPTIONS.iter().enumerate().skip(i + 1) {
+            let both = run(&[first, second]);
+            if both.0 == Some(0) {
+                accepted += 1;
+                assert!(both != single[i], "{second:?} is ignored beside {first:?}");
+                assert!(both != single[j], "{first:?} is ignored beside {second:?}");
+            } else {
+                assert_eq!((both.0, both.2.len()), (Some(2), 0), "{first:?} {second:?}");
+            }
+        }
+    }
+    assert!(accepted > 30, "{accepted} pairs are accepted");
 }

@@ -35,7 +35,7 @@ pub(crate) const CHAPTER: Chapter = Chapter {
         Variant::with_pipeline("still-life", still_life::still_life, "pawns and a ball on a polished board, everything at once: perspective, textures with mip maps, light, depth, and a board that is blended over its reflections")
             .tiled().size(768, 432).animated(ORBIT).knobs(still_life::KNOBS),
         Variant::of_model("turntable", turntable::turntable, ["cube.obj", "letters.png"], "a model seen from the upper right and lit from the left: three sides, three brightnesses; made for a --model of your own")
-            .tiled().animated(ORBIT).knobs(turntable::KNOBS),
+            .tiled().animated(ORBIT).fits_model().knobs(turntable::KNOBS),
         Variant::of_model("lit", lit::lit, ["pawn.obj", "wood.png"], "a model turns in the light: bright where it faces the light, never black; a few specks are seams that the scanline fill leaves open, or first texels where u ends at 1")
             .source("sections 11.1 to 11.3").animated(TURN).knobs(lit::KNOBS),
         Variant::with_pipeline("rotation", matrices::rotation, "a triangle turns about an upright axis, a degree a frame; it vanishes when we see its back")

@@ -123,7 +123,7 @@ const ARROW: [[f64; 2]; 9] = [
 ];
 
 // ANCHOR: pivot
-/// An arrow, turned in steps of 10°: about the origin on the left, about its middle, or another point, on the right.
+/// Nine arrows, each turned by a step more: about the origin on the left, about its middle, or another point, on the right.
 pub(super) fn pivot(canvas: &mut Canvas) {
     canvas.clear(&RenderState::default());
     let angle = canvas.knobs.number("step");

@@ -54,6 +54,8 @@ pub struct Variant {
     pub animation: Option<Animation>,
     /// The rasterizer, unless `--rasterizer` says otherwise; figures without a pipeline have none.
     pub rasterizer: Option<RasterizerChoice>,
+    /// Whether it brings any model into its view by itself, wherever that is.
+    pub fits_model: bool,
     /// What can be turned.
     pub knobs: &'static [Knob],
     /// Whether it is about single pixels, and drawn in them whatever the size; all others are scenes, and scale to fit.
@@ -189,8 +191,20 @@ impl Variant {
             Figure::Canvas(_) | Figure::Model(..) => Some(RasterizerChoice::Scanline),
         };
         let (source, mistake) = ("", Mistake::No);
-        let (size, in_pixels) = ((640, 480), false);
-        Self { name, look, source, size, mistake, animation: None, rasterizer, knobs: &[], in_pixels, figure }
+        let (size, in_pixels, fits_model) = ((640, 480), false, false);
+        Self {
+            name,
+            look,
+            source,
+            size,
+            mistake,
+            animation: None,
+            rasterizer,
+            knobs: &[],
+            in_pixels,
+            fits_model,
+            figure,
+        }
     }
 
     /// The same, with the exact rasterizer.
@@ -221,6 +235,12 @@ impl Variant {
     pub const fn animated(self, animation: Animation) -> Self {
         assert!(animation.frames > 0 && animation.rate > 0, "an animation has frames, and they move");
         Self { animation: Some(animation), ..self }
+    }
+
+    /// The same, bringing any model into its view by itself.
+    #[must_use]
+    pub const fn fits_model(self) -> Self {
+        Self { fits_model: true, ..self }
     }
 
     /// The same, with knobs.

@@ -135,7 +135,9 @@ impl Knob {
         match self.kind {
             // The ends exactly.
             Kind::Number { range: [low, high], .. } => {
-                Some(Value::Number(low * (1.0 - fraction) + high * fraction))
+                let value = low * (1.0 - fraction) + high * fraction;
+                // Not more digits than somebody reads.
+                Some(Value::Number(((value * 1e4).round() / 1e4).clamp(low, high)))
             }
             Kind::Whole { range: [low, high], .. } => Some(Value::Whole(whole(low, high))),
             Kind::Choice(names) => Some(Value::Choice(whole(0, names.len() as i32 - 1) as usize)),
@@ -184,8 +186,8 @@ impl Knob {
             }
             Kind::Choice(names) => names.join(" | "),
             Kind::Switch(_) => "on | off".to_owned(),
-            Kind::Point(_) => "a point of the picture, X,Y in pixels, y up".to_owned(),
-            Kind::Color(_) => "a color, #RRGGBB".to_owned(),
+            Kind::Point(_) => "a point, X,Y in pixels of the variant's own size, y up".to_owned(),
+            Kind::Color(_) => "a color, RRGGBB".to_owned(),
         }
     }
 
@@ -200,7 +202,7 @@ impl Knob {
             (_, Value::Point(point)) => format!("{},{}", point.x, point.y),
             (_, Value::Color(color)) => {
                 let [red, green, blue] = color.channels();
-                format!("#{red:02x}{green:02x}{blue:02x}")
+                format!("{red:02x}{green:02x}{blue:02x}")
             }
             (_, Value::Choice(index)) => index.to_string(),
         }
@@ -477,7 +479,7 @@ mod tests {
         assert_eq!(knobs.color("paint"), Color::rgb(0, 255, 127));
         assert_eq!(
             knobs.changed(),
-            ["tilt=80", "bits=8", "rule=top-left", "clip=off", "p=64,48", "paint=#00ff7f"]
+            ["tilt=80", "bits=8", "rule=top-left", "clip=off", "p=64,48", "paint=00ff7f"]
         );
         let before = knobs.clone();
         for bad in [

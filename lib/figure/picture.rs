@@ -79,17 +79,22 @@ pub(crate) const fn block((x, y): Pixel, factor: u32, origin: Pixel) -> Rect {
 }
 
 /// A part of a picture, each pixel as a block, with a thin grid if the blocks are large enough.
-pub(crate) fn blocks(picture: &Framebuffer, part: Rect, factor: u32) -> Framebuffer {
+fn blocks(picture: &Framebuffer, part: Rect, factor: u32) -> Framebuffer {
     let mut result =
         Framebuffer::new(part.columns().len() as u32 * factor, part.rows().len() as u32 * factor);
-    result.clear(GRID);
+    fill_blocks(&mut result, picture, part, factor);
+    result
+}
+
+/// The same, from the lower left pixel of a picture on; what does not fit is cut.
+pub(crate) fn fill_blocks(into: &mut Framebuffer, picture: &Framebuffer, part: Rect, factor: u32) {
+    into.clear(GRID);
     for y in part.rows() {
         for x in part.columns() {
             let block = block((x - part.left, y - part.bottom), factor, (0, 0));
-            result.fill(block, picture.get(x, y).unwrap_or_default());
+            into.fill(block, picture.get(x, y).unwrap_or_default());
         }
     }
-    result
 }
 
 /// Draws on a screen of its own, `width` × `height` pixels, and shows each of them as a block, as large as all of them fit.

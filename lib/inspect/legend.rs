@@ -11,6 +11,16 @@ const OUTLINE: Color = Color::gray(120);
 const SWATCH: i32 = 12;
 const GAP: i32 = 6;
 
+/// What the colors mean, in a line, for those who have no picture with a legend.
+#[must_use]
+pub fn heat_legend() -> String {
+    let last = HEAT.len() - 1;
+    let more = |count: usize| if count == last { "+" } else { "" };
+    let colors: Vec<String> =
+        HEAT.iter().enumerate().map(|(count, (_, name))| format!("{name} {count}{}", more(count))).collect();
+    format!("how often each pixel was written: {}", colors.join(", "))
+}
+
 /// The picture with a strip below it: a swatch of each color and how many writes it stands for.
 #[must_use]
 pub fn with_legend(picture: Framebuffer) -> Framebuffer {

@@ -13,5 +13,5 @@ mod steps;
 
 pub use explain::{histories, history};
 pub use history::History;
-pub use legend::with_legend;
+pub use legend::{heat_legend, with_legend};
 pub use steps::Steps;

@@ -74,6 +74,7 @@ impl Request {
         let mut command = command(chapter);
         let matches =
             command.try_get_matches_from_mut(arguments).map_err(|error| explained(error, &command))?;
+        refuse_form_without_report(&matches, &mut command)?;
         let text = |id: &str| matches.get_one::<String>(id).cloned();
         Ok(Self {
             list: matches.get_flag("list"),
@@ -124,6 +125,17 @@ fn explained(mut error: clap::Error, command: &Command) -> clap::Error {
         error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip]));
     }
     error
+}
+
+/// How a report is told means nothing without one. Clap waives what an option requires where that would be in conflict with
+/// another one that is given, as `--inspect` is with `--out`.
+fn refuse_form_without_report(matches: &ArgMatches, command: &mut Command) -> Result<(), clap::Error> {
+    let is_told = matches.get_flag("verbose") || matches.contains_id("format");
+    if is_told && !matches.contains_id("inspect") {
+        let reason = "--verbose and --format are for a report: give --inspect X,Y";
+        return Err(command.error(ErrorKind::MissingRequiredArgument, reason));
+    }
+    Ok(())
 }
 
 fn comparison(matches: &ArgMatches) -> Option<Comparison> {

@@ -5,7 +5,8 @@ use super::failure::Failure;
 use super::programs::{PROGRAMS, Program};
 use crate::figure::{Chapter, Knobs, Mistake, Variant};
 
-/// The variant for those who have named none: the lead, or the first that can draw what was given instead of its own.
+/// The variant for those who have named none: the lead, or the first that can draw the model that was given, and
+/// has the knobs that were set.
 pub(super) fn unnamed<'a>(chapter: &'a Chapter, request: &Request) -> &'a Variant {
     let has_knobs = |variant: &Variant| {
         let knobs = Knobs::new(variant.knobs, variant.size);
@@ -83,6 +84,12 @@ pub(super) fn check_model_options(
         let others = those(chapter, Variant::has_model, |program| program.has_model);
         return Err(Failure::Usage(format!(
             "'{name}' draws no model: --model, --as-is and --flat mean nothing to it\nModels are drawn by {others}"
+        )));
+    }
+    if variant.fits_model && request.as_is {
+        return Err(Failure::Usage(format!(
+            "'{}' brings every model into its view: --as-is means nothing to it",
+            variant.name
         )));
     }
     if !variant.has_texture() && request.texture.is_some() {

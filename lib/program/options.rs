@@ -7,7 +7,8 @@ use clap::{Arg, ArgAction, Command};
 use super::programs::PROGRAMS;
 use super::show::Asked;
 use super::values::{
-    parse_angles, parse_frame, parse_name, parse_path, parse_pixel, parse_setting, parse_size, parse_zoom,
+    parse_angles, parse_color, parse_frame, parse_name, parse_path, parse_pixel, parse_setting, parse_size,
+    parse_zoom,
 };
 use crate::figure::{Chapter, Knob, Mistake, RasterizerChoice, Variant};
 
@@ -19,7 +20,7 @@ pub(super) fn command(chapter: &Chapter) -> Command {
     let after = format!(
         "Variants (--list tells what to look for):\n  {variants}\n\n\
          Other programs (cargo run --bin NAME):\n  {others}\n\n\
-         Written files are printed on standard output, a line each."
+         The names of written files are printed on standard output, a line each."
     );
     let variant = format!("The picture to draw [default: {}]", chapter.lead().name);
     let group = |heading: &'static str, arguments: Vec<Arg>| {
@@ -50,7 +51,9 @@ fn option(id: &'static str, value: &'static str, help: impl Into<String>) -> Arg
 fn what_to_draw(chapter: &Chapter) -> Vec<Arg> {
     let animated = chapter.variants.iter().any(|variant| variant.animation.is_some());
     let mut arguments = vec![
-        switch("list", "List the variants: what each is called and what to look for").exclusive(true),
+        switch("list", "List the variants: what each is called and what to look for")
+            .conflicts_with_all(BESIDE_LISTS)
+            .conflicts_with("knobs"),
         switch("all", "Draw all variants, of animations the first frame").conflicts_with("variant"),
         option("frame", "N", "Draw frame N of an animation, counted from 0")
             .value_parser(parse_frame)
@@ -64,12 +67,40 @@ fn what_to_draw(chapter: &Chapter) -> Vec<Arg> {
     arguments
 }
 
+/// What means nothing to a list.
+const BESIDE_LISTS: [&str; 24] = [
+    "window",
+    "verbose",
+    "format",
+    "all",
+    "frame",
+    "set",
+    "model",
+    "texture",
+    "as-is",
+    "flat",
+    "eye",
+    "light",
+    "background",
+    "rasterizer",
+    "show",
+    "zoom",
+    "compare",
+    "animate",
+    "sweep",
+    "steps",
+    "overdraw",
+    "inspect",
+    "out",
+    "size",
+];
+
 /// What can be turned.
 fn knobs(chapter: &Chapter) -> [Arg; 2] {
     let is_hidden = chapter.variants.iter().all(|variant| variant.knobs.is_empty());
     [
         switch("knobs", "List the knobs of the variant: what can be turned, and what to watch")
-            .conflicts_with_all(["all", "out", "inspect"]),
+            .conflicts_with_all(BESIDE_LISTS),
         option("set", "NAME=VALUE", "Set a knob, such as tilt=60; can be given several times")
             .value_parser(parse_setting)
             .action(ArgAction::Append)
@@ -107,8 +138,8 @@ fn view(chapter: &Chapter) -> [Arg; 3] {
         option("light", "A,E", "Light the model from there, in the same way")
             .value_parser(parse_angles)
             .conflicts_with("all"),
-        option("background", "COLOR", "Draw the model in front of this color, such as #203040")
-            .value_parser(parse_name)
+        option("background", "COLOR", "Draw the model in front of this color, such as 203040")
+            .value_parser(parse_color)
             .conflicts_with("all"),
     ]
     .map(|argument| argument.hide(is_hidden))
@@ -136,7 +167,7 @@ fn how_to_look(chapter: &Chapter) -> Vec<Arg> {
     arguments.extend([
         option("zoom", "N[@X,Y]", "Draw each pixel as N×N, around the pixel (X, Y), y up from the bottom")
             .value_parser(parse_zoom),
-        option("compare", "OTHER", "Draw this | OTHER, or the mistake's remedy | where they differ")
+        option("compare", "OTHER", "Draw it beside OTHER, or beside its remedy, and where they differ")
             // Its value may be missing: what follows then is another option.
             .allow_hyphen_values(false)
             .allow_negative_numbers(true)
@@ -173,19 +204,16 @@ fn what_to_tell() -> [Arg; 4] {
         option("inspect", "X,Y", "Print all that happened at the pixel (X, Y), y up from the bottom")
             .value_parser(parse_pixel)
             .conflicts_with_all(["all", "animate", "compare", "zoom", "out"]),
-        switch("verbose", "Print also what came near that pixel and did not reach it")
-            .short('v')
-            .requires("inspect"),
+        switch("verbose", "Print also what came near that pixel and did not reach it").short('v'),
         option("format", "FORM", "Print it as text, or as json for programs")
             .value_parser(["text", "json"])
-            .hide_possible_values(true)
-            .requires("inspect"),
+            .hide_possible_values(true),
     ]
 }
 
 /// A look at it.
 fn window() -> Arg {
-    switch("window", "Open a window: turn knobs, drag, see single pixels; H tells the keys")
+    switch("window", "Open a window: turn knobs, drag, see single pixels; H lists the keys")
         .conflicts_with_all([
             "all", "animate", "compare", "inspect", "steps", "overdraw", "knobs", "zoom", "show",
         ])
@@ -227,9 +255,9 @@ fn size_help(chapter: &Chapter) -> String {
     }
 }
 
-/// The variants of a chapter, a line each: name, then what to look for.
-pub(super) fn list(chapter: &Chapter) -> String {
-    let width = chapter.variants.iter().map(|variant| variant.name.len()).max().unwrap_or(0);
+/// Variants, a line each: name, then what to look for.
+pub(super) fn list(variants: &[Variant]) -> String {
+    let width = variants.iter().map(|variant| variant.name.len()).max().unwrap_or(0);
     let line = |variant: &Variant| {
         let mistake = match variant.mistake {
             Mistake::No => String::new(),
@@ -240,7 +268,7 @@ pub(super) fn list(chapter: &Chapter) -> String {
         let in_pixels = if variant.in_pixels { " [in pixels: --size does not scale it]" } else { "" };
         format!("  {:width$}  {}{source}{mistake}{in_pixels}\n", variant.name, variant.look)
     };
-    chapter.variants.iter().map(line).collect()
+    variants.iter().map(line).collect()
 }
 
 /// The knobs of a variant, two lines each.

@@ -12,13 +12,13 @@ use super::choice::{check_model_options, find, hints, other, unnamed};
 use super::failure::Failure;
 use super::options::{knob_list, list};
 use super::output::{Destination, note, say};
-use super::scenes::{check_inside, load, pair_of, scene_of, sweepable, unseen};
+use super::scenes::{check_inside, load, name_of, pair_of, scene_of, sweepable, unseen};
 use super::show::Screen;
 #[cfg(feature = "window")]
 use super::window::open_window;
 use super::wrap::{WIDEST, terminal_width, wrap_columns};
 use crate::figure::picture::{Zoom, difference, side_by_side, zoomed};
-use crate::figure::{Animation, Chapter, DrawOptions, Scene, Variant};
+use crate::figure::{Animation, Chapter, DrawOptions, Knob, Scene, Variant};
 use crate::framebuffer::Framebuffer;
 use crate::inspect::{Steps, history, with_legend};
 use crate::rect::{Pixel, Rect};
@@ -64,9 +64,13 @@ fn ended(result: Result<(), Failure>) -> ExitCode {
 fn run(chapter: &Chapter, request: &Request) -> Result<(), Failure> {
     if request.list {
         // A line each for grep, wrapped for people.
-        let list =
-            terminal_width().map_or_else(|| list(chapter), |width| wrap_columns(&list(chapter), width));
-        return say(list.trim_end());
+        let variants = match &request.variant {
+            Some(name) => std::slice::from_ref(find(chapter, name)?),
+            None => chapter.variants,
+        };
+        let list = list(variants);
+        let wrapped = terminal_width().map(|width| wrap_columns(&list, width));
+        return say(wrapped.as_deref().unwrap_or(&list).trim_end());
     }
     let default = || PathBuf::from("out").join(chapter.name);
     let destination = match request.show {
@@ -97,10 +101,17 @@ fn run(chapter: &Chapter, request: &Request) -> Result<(), Failure> {
     if request.steps || request.overdraw {
         return draw_recorded(variant, request, &destination);
     }
-    match &request.compare {
-        _ if request.sweep.is_some() => sweep(chapter, variant, request, &destination),
-        None if request.animate => animate(variant, request, &destination),
-        None => {
+    let that = match &request.compare {
+        None => None,
+        Some(comparison) => Some(other(chapter, variant, comparison)?),
+    };
+    that.map_or(Ok(()), |that| check_model_options(chapter, that, request))?;
+    match (&request.sweep, that) {
+        (Some(knob), None) => sweep(variant, knob, request, &destination),
+        (Some(knob), Some(that)) => sweep_comparison(variant, that, knob, request, &destination),
+        (None, Some(that)) => draw_comparison(variant, that, request, &destination),
+        (None, None) if request.animate => animate(variant, request, &destination),
+        (None, None) => {
             draw_one(variant, request, &destination)?;
             // Below a picture in the terminal, they would push its top out of sight.
             if request.variant.is_none() && request.show.is_none() && std::io::stderr().is_terminal() {
@@ -108,19 +119,14 @@ fn run(chapter: &Chapter, request: &Request) -> Result<(), Failure> {
             }
             Ok(())
         }
-        Some(comparison) => {
-            let other = other(chapter, variant, comparison)?;
-            check_model_options(chapter, other, request)?;
-            draw_comparison(variant, other, request, &destination)
-        }
     }
 }
 
 #[cfg(not(feature = "window"))]
-fn open_window(chapter: &Chapter, _: &Variant, _: &Request, _: &Destination) -> Result<(), Failure> {
-    let name = chapter.name;
+fn open_window(chapter: &Chapter, variant: &Variant, _: &Request, _: &Destination) -> Result<(), Failure> {
+    let (name, variant) = (chapter.name, variant.name);
     Err(Failure::Usage(format!(
-        "this program was built without a window: cargo run --features window --bin {name} -- --window"
+        "this program was built without a window: cargo run --release --features window --bin {name} -- {variant} --window"
     )))
 }
 
@@ -136,14 +142,19 @@ fn draw_one(variant: &Variant, request: &Request, destination: &Destination) -> 
     let scene = scene_of(variant, request, &load(request)?)?;
     let picture = scene.draw();
     let unseen = request.model.as_ref().and_then(|path| unseen(path, &scene, &picture));
-    destination.write(&name_of(variant, request), &enlarged(picture, request.zoom))?;
+    destination.write(&name_of(&scene, request), &enlarged(picture, request.zoom))?;
     if let Some(reason) = unseen {
         note(&reason);
     }
-    if let Some(zoom) = request.zoom {
-        note(&shown_by(zoom, scene.size));
-    }
+    tell_part(request, scene.size);
     Ok(())
+}
+
+/// Says which part of a picture is shown, if it is zoomed.
+fn tell_part(request: &Request, size: (u32, u32)) {
+    if let Some(zoom) = request.zoom {
+        note(&shown_by(zoom, size));
+    }
 }
 
 /// Which pixels a zoomed picture shows, so that one that is seen can be found again.
@@ -163,42 +174,45 @@ fn animate(variant: &Variant, request: &Request, destination: &Destination) -> R
     };
     let scene = scene_of(variant, request, &load(request)?)?;
     let draw = |frame| enlarged(variant.draw(&DrawOptions { frame, ..scene.options(None) }), request.zoom);
-    destination.write_animation(&name_of(variant, request), |format| encode(format, animation, &draw))
+    destination.write_animation(&name_of(&scene, request), |format| encode(format, animation, &draw))
 }
 
 /// How many frames a sweep has, and how fast they are shown.
 const SWEEP: Animation = Animation { frames: 60, rate: 20 };
 
-/// Draws an animation in which a knob goes once through its range, beside the remedy and the difference if that is asked.
-fn sweep(
-    chapter: &Chapter,
-    variant: &Variant,
+/// A scene with a knob at the place in its range that belongs to a frame of a sweep.
+fn swept(scene: &Scene<'_>, knob: &Knob, number: u32) -> Framebuffer {
+    let mut options = scene.options(None);
+    let value = knob.at(f64::from(number) / f64::from(SWEEP.frames - 1));
+    options.knobs.put(knob.name, value.unwrap_or(knob.default()));
+    scene.variant.draw(&options)
+}
+
+/// Draws an animation in which a knob goes once through its range.
+fn sweep(variant: &Variant, name: &str, request: &Request, destination: &Destination) -> Result<(), Failure> {
+    let knob = sweepable(variant, name, request)?;
+    let scene = scene_of(variant, request, &load(request)?)?;
+    let draw = |number| enlarged(swept(&scene, knob, number), request.zoom);
+    let file = format!("{}-sweep-{name}", name_of(&scene, request));
+    destination.write_animation(&file, |format| encode(format, SWEEP, &draw))
+}
+
+/// The same beside another variant, and where the two differ.
+fn sweep_comparison(
+    this: &Variant,
+    that: &Variant,
+    name: &str,
     request: &Request,
     destination: &Destination,
 ) -> Result<(), Failure> {
-    let name = request.sweep.as_deref().unwrap_or_default();
-    let knob = sweepable(variant, name)?;
-    let turned = |scene: &Scene<'_>, number: u32| {
-        let mut options = scene.options(None);
-        let value = knob.at(f64::from(number) / f64::from(SWEEP.frames - 1));
-        options.knobs.put(name, value.unwrap_or(knob.default()));
-        scene.variant.draw(&options)
-    };
-    let swept = format!("{}-sweep-{name}", name_of(variant, request));
-    let Some(comparison) = &request.compare else {
-        let scene = scene_of(variant, request, &load(request)?)?;
-        let draw = |number| enlarged(turned(&scene, number), request.zoom);
-        return destination.write_animation(&swept, |format| encode(format, SWEEP, &draw));
-    };
-    let that = other(chapter, variant, comparison)?;
-    check_model_options(chapter, that, request)?;
-    let (first, second) = pair_of(variant, that, request)?;
-    // Whether the three fit is seen at the first frame.
-    let panels = |number| compared(turned(&first, number), turned(&second, number), request.zoom);
+    let knob = sweepable(this, name, request)?;
+    let (first, second) = pair_of(this, that, request)?;
+    let panels = |number| compared(swept(&first, knob, number), swept(&second, knob, number), request.zoom);
+    // Whether the three fit is the same for all frames: it is seen at the first.
     panels(0).ok_or_else(|| not_comparable(&first, &second))?;
     let draw = |number| panels(number).map_or_else(|| first.draw(), |(picture, _)| picture);
-    let swept = format!("{swept}--{}", that.name);
-    destination.write_animation(&swept, |format| encode(format, SWEEP, &draw))
+    let file = format!("{}-sweep-{name}--{}", name_of(&first, request), that.name);
+    destination.write_animation(&file, |format| encode(format, SWEEP, &draw))
 }
 
 /// Prints the history of a pixel; nothing is written but text.
@@ -224,13 +238,15 @@ fn draw_recorded(variant: &Variant, request: &Request, destination: &Destination
     let steps = Steps::new(variant, &scene.options(None));
     if request.steps {
         let draw = |number| enlarged(steps.frame(number), request.zoom);
-        let name = format!("{}-steps", name_of(variant, request));
+        let name = format!("{}-steps", name_of(&scene, request));
         return destination.write_animation(&name, |format| encode(format, steps.animation(), &draw));
     }
     let (heat, legend) = steps.overdraw();
     note(&legend.join("\n"));
-    let name = format!("{}-overdraw", name_of(variant, request));
-    destination.write(&name, &with_legend(enlarged(heat, request.zoom)))
+    let name = format!("{}-overdraw", name_of(&scene, request));
+    destination.write(&name, &with_legend(enlarged(heat, request.zoom)))?;
+    tell_part(request, scene.size);
+    Ok(())
 }
 
 fn draw_comparison(
@@ -243,8 +259,9 @@ fn draw_comparison(
     let total = first.size.0 as usize * first.size.1 as usize;
     let (picture, count) =
         compared(first.draw(), second.draw(), request.zoom).ok_or_else(|| not_comparable(&first, &second))?;
-    destination.write(&format!("{}--{}", name_of(this, request), that.name), &picture)?;
+    destination.write(&format!("{}--{}", name_of(&first, request), that.name), &picture)?;
     note(&format!("{count} of {total} pixels differ"));
+    tell_part(request, first.size);
     Ok(())
 }
 
@@ -262,22 +279,4 @@ fn not_comparable(first: &Scene<'_>, second: &Scene<'_>) -> Failure {
     } else {
         format!("'{}' and '{}' differ in size: give --size", first.variant.name, second.variant.name)
     })
-}
-
-/// The file name of a picture, without extension.
-pub(super) fn name_of(variant: &Variant, request: &Request) -> String {
-    let frame = request.frame.map_or_else(String::new, |frame| format!("@{frame:03}"));
-    let rasterizer = request.rasterizer.map_or_else(String::new, |choice| format!("-{}", choice.name()));
-    let zoom = request.zoom.map_or_else(String::new, |zoom| {
-        let place = zoom.center.map_or_else(String::new, |(x, y)| format!("-at-{x}-{y}"));
-        format!("-zoom{}{place}", zoom.factor)
-    });
-    let settings: String =
-        request.settings.iter().map(|setting| format!("-{}", file_name(setting))).collect();
-    format!("{}{frame}{settings}{rasterizer}{zoom}", variant.name)
-}
-
-/// A setting such as `tilt=60` as a part of a file name.
-fn file_name(setting: &str) -> String {
-    setting.chars().filter(|c| *c != '#').map(|c| if c == '=' || c == ',' { '-' } else { c }).collect()
 }

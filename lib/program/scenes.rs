@@ -119,15 +119,28 @@ fn rasterizer_of(variant: &Variant, request: &Request) -> Result<RasterizerChoic
 
 /// Why a knob was not set, and which there are.
 fn not_set(variant: &Variant, error: &KnobError) -> Failure {
-    Failure::Usage(format!("'{}': {error}\n{}", variant.name, knob_list(variant)))
+    // Who gave one of the short options has not named a knob.
+    let short = match error {
+        KnobError::Unknown(name) if ["azimuth", "elevation"].contains(&name.as_str()) => " (--eye sets it)",
+        KnobError::Unknown(name) if ["light-azimuth", "light-elevation"].contains(&name.as_str()) => {
+            " (--light sets it)"
+        }
+        KnobError::Unknown(name) if name == "background" => " (--background sets it)",
+        _ => "",
+    };
+    Failure::Usage(format!("'{}': {error}{short}\n{}", variant.name, knob_list(variant)))
 }
 
-/// The knob of a name, if it has a range.
-pub(super) fn sweepable(variant: &Variant, name: &str) -> Result<&'static Knob, Failure> {
+/// The knob of a name that is to be swept, if it has a range and is not set too.
+pub(super) fn sweepable(variant: &Variant, name: &str, request: &Request) -> Result<&'static Knob, Failure> {
     let knob = variant.knobs.iter().find(|knob| knob.name == name);
     let knob = knob.ok_or_else(|| not_set(variant, &KnobError::Unknown(name.to_owned())))?;
     if knob.at(0.0).is_none() {
         return Err(Failure::Usage(format!("'{name}' is {}: it has no range to be swept", knob.range())));
+    }
+    let is_set = |setting: &String| setting.split_once('=').is_some_and(|(set, _)| set == name);
+    if request.settings.iter().any(is_set) {
+        return Err(Failure::Usage(format!("'{name}' is swept: it cannot be set too")));
     }
     Ok(knob)
 }
@@ -168,11 +181,34 @@ pub(super) fn unseen(path: &Path, scene: &Scene<'_>, picture: &Framebuffer) -> O
             (b - a).cross(c - a) != DVec3::ZERO
         })
     });
-    let reason = if has_area {
-        "its faces turn away from the eye, or lie outside the view; 'turntable' of chapter 10 draws both sides, and \
-         all of it (without --as-is the model is brought into the view)"
-    } else {
-        "its faces have no area"
+    let reason = match (has_area, scene.variant.fits_model) {
+        (false, _) => "its faces have no area",
+        // It is drawn whole, from both sides: so from its edge.
+        (true, true) => "its faces are seen from their edge",
+        (true, false) => "its faces turn away from the eye, or lie outside the view",
     };
     Some(shown(&format!("nothing of {} is visible: {reason}", path.display())))
+}
+
+/// The file name of a picture as it was asked for, without extension.
+pub(super) fn name_of(scene: &Scene<'_>, request: &Request) -> String {
+    picture_name(scene, request.frame, request.rasterizer, request.zoom)
+}
+
+/// The file name of a scene's picture, without extension: what is not as in the table stands in it.
+pub(super) fn picture_name(
+    scene: &Scene<'_>,
+    frame: Option<u32>,
+    rasterizer: Option<RasterizerChoice>,
+    zoom: Option<Zoom>,
+) -> String {
+    let frame = frame.map_or_else(String::new, |frame| format!("@{frame:03}"));
+    let rasterizer = rasterizer.map_or_else(String::new, |choice| format!("-{}", choice.name()));
+    let zoom = zoom.map_or_else(String::new, |zoom| {
+        let place = zoom.center.map_or_else(String::new, |(x, y)| format!("-at-{x}-{y}"));
+        format!("-zoom{}{place}", zoom.factor)
+    });
+    let knobs: String = scene.knobs.changed().iter().map(|knob| format!("-{knob}")).collect();
+    let knobs = knobs.replace(['=', ','], "-");
+    format!("{}{frame}{knobs}{rasterizer}{zoom}", scene.variant.name)
 }

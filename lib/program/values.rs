@@ -83,6 +83,12 @@ pub(super) fn parse_setting(text: &str) -> Result<String, String> {
         .ok_or_else(|| "expected NAME=VALUE, such as tilt=60; --knobs lists them".to_owned())
 }
 
+/// A color, as a knob reads it.
+pub(super) fn parse_color(text: &str) -> Result<String, String> {
+    let is_color = !text.starts_with('-') && !text.is_empty();
+    is_color.then(|| text.to_owned()).ok_or_else(|| "expected a color, RRGGBB, such as 203040".to_owned())
+}
+
 /// A name that is no option.
 pub(super) fn parse_name(text: &str) -> Result<String, String> {
     let is_name = !text.is_empty() && !text.starts_with('-');

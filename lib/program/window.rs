@@ -9,28 +9,29 @@ use minifb::{InputCallback, Key, MouseButton, MouseMode, Window, WindowOptions};
 use super::arguments::Request;
 use super::failure::Failure;
 use super::output::{Destination, note, say};
-use super::scenes::{load, runtime_failure, scene_of, sweepable};
+use super::scenes::{load, picture_name, runtime_failure, scene_of, sweepable};
 use crate::color::Color;
 use crate::figure::{Chapter, Variant};
 use crate::framebuffer::Framebuffer;
+use crate::inspect::heat_legend;
 use crate::live::{Event, Live, View};
 use crate::rect::Pixel;
 
 /// What the keys and the mouse do.
 const HELP: &str = "\
-Tab, up, down   the next or the previous knob        Home   all as at first
+Tab, up, down   the next or the previous knob        M      the remedy of a mistake
 left, right     turn it                              Space  run or stop the animation, or the knob
-1 to 9 , .      another variant                      O      how often each pixel was written
-M               the remedy of a mistake              R      the next rasterizer
-D               where the two differ                 S      save what is seen
-wheel, + -      single pixels, and back              H ?    these lines
-drag            a point, or the model                Esc    close
-click           what happened at the pixel";
+K               let the knob go through its range    Home   knobs and frame as at first
+1 to 9 , .      another variant                      D      where the two differ
+wheel, + -      single pixels, and back              O      how often each pixel was written
+drag            a point, or the model                R      the next rasterizer
+click           what happened at the pixel           S      save what is seen
+H ?             these lines                          Esc    close";
 
 /// What is around the picture.
 const BORDER: u32 = 0x20_20_20;
-/// A small picture is shown at least so large, if a whole number does it.
-const WIDTH: u32 = 640;
+/// A small picture is shown as large as it fits into so many pixels by a whole number.
+const ROOM: (u32, u32) = (640, 480);
 /// The most pictures a second.
 const RATE: usize = 60;
 
@@ -41,12 +42,17 @@ pub(super) fn open_window(
     request: &Request,
     destination: &Destination,
 ) -> Result<(), Failure> {
+    if *destination == Destination::Output {
+        return Err(Failure::Usage(
+            "what is saved in a window goes into a folder or a file: --out - is neither".to_owned(),
+        ));
+    }
     let given = load(request)?;
     let mut live = Live::new(chapter, scene_of(variant, request, &given)?, given);
     if let Some(name) = &request.sweep {
-        sweepable(variant, name)?;
+        sweepable(variant, name, request)?;
         live.take_knob(name);
-        live.apply(Event::Run).map_err(runtime_failure)?;
+        live.apply(Event::Sweep).map_err(runtime_failure)?;
     }
     show(live, destination)
 }
@@ -54,7 +60,7 @@ pub(super) fn open_window(
 /// Shows what is looked at until the window is closed.
 fn show(live: Live<'_>, destination: &Destination) -> Result<(), Failure> {
     let (width, height) = live.scene().size;
-    let scale = (WIDTH / width).max(1);
+    let scale = (ROOM.0 / width).min(ROOM.1 / height).max(1);
     let options = WindowOptions { resize: true, ..WindowOptions::default() };
     let size = [width, height].map(|side| (side * scale) as usize);
     let mut window = Window::new(live.scene().variant.name, size[0], size[1], options).map_err(no_window)?;
@@ -109,6 +115,9 @@ impl Keys {
 /// The picture on the window, and what drawing cost.
 #[derive(Default)]
 struct Shown {
+    /// The whole picture, if it is that of now.
+    whole: Option<Framebuffer>,
+    /// What is shown of it.
     picture: Option<Framebuffer>,
     buffer: Vec<u32>,
     size: (usize, usize),
@@ -180,10 +189,12 @@ impl Viewer<'_> {
     }
 
     fn key(&mut self, key: Key) -> Result<(), Failure> {
-        let here = self.pointer.unwrap_or_else(|| {
-            let (width, height) = self.live.scene().size;
-            (width as i32 / 2, height as i32 / 2)
-        });
+        let here =
+            self.pointer.filter(|pointer| self.live.pixel_at(*pointer).is_some()).unwrap_or_else(|| {
+                let (width, height) = self.live.scene().size;
+                (width as i32 / 2, height as i32 / 2)
+            });
+        self.tell_without_effect(key);
         let event = match key {
             Key::Tab | Key::Down => Event::NextKnob(1),
             Key::Up => Event::NextKnob(-1),
@@ -191,6 +202,7 @@ impl Viewer<'_> {
             Key::Right => Event::Turn(1),
             Key::Home => Event::Reset,
             Key::Space => Event::Run,
+            Key::K => Event::Sweep,
             Key::M => Event::Show(View::Remedy),
             Key::D => Event::Show(View::Difference),
             Key::O => Event::Show(View::Overdraw),
@@ -199,7 +211,10 @@ impl Viewer<'_> {
             Key::Period => Event::NextVariant(1),
             Key::Equal | Key::NumPadPlus => Event::Magnify(1, here),
             Key::Minus | Key::NumPadMinus => Event::Magnify(-1, here),
-            Key::S => return self.save(),
+            Key::S => {
+                self.save();
+                return Ok(());
+            }
             Key::Escape => {
                 self.is_closed = true;
                 return Ok(());
@@ -214,6 +229,21 @@ impl Viewer<'_> {
             },
         };
         self.apply(event)
+    }
+
+    /// Says of a key why nothing happens, if nothing does; and what overdraw's colors mean.
+    fn tell_without_effect(&self, key: Key) {
+        let variant = self.live.scene().variant;
+        let is_knob = matches!(key, Key::Tab | Key::Up | Key::Down | Key::Left | Key::Right | Key::K);
+        let lacks = match key {
+            Key::M | Key::D if self.live.remedy().is_none() => "remedy",
+            Key::R if variant.rasterizer.is_none() => "choice of rasterizers",
+            _ if is_knob && variant.knobs.is_empty() => "knobs",
+            Key::Space if variant.animation.is_none() && variant.knobs.is_empty() => "animation and no knobs",
+            Key::O if self.live.view() != View::Overdraw => return note(&heat_legend()),
+            _ => return,
+        };
+        note(&format!("'{}' has no {lacks}", variant.name));
     }
 
     fn mouse(&mut self, window: &Window) -> Result<(), Failure> {
@@ -254,18 +284,21 @@ impl Viewer<'_> {
         self.live.pixel_at(pixel).map_or(Ok(()), |pixel| say(&self.live.history(pixel).to_string()))
     }
 
-    /// Writes what is seen into a file.
-    fn save(&self) -> Result<(), Failure> {
-        let settings = self.live.scene().knobs.changed().join("-").replace(['=', ','], "-").replace('#', "");
+    /// Writes what is seen into a file. Where that fails, the window stays.
+    fn save(&self) {
         let view = match self.live.view() {
             View::Itself => "",
             View::Remedy => "-remedy",
             View::Difference => "-difference",
             View::Overdraw => "-overdraw",
         };
-        let dash = if settings.is_empty() { "" } else { "-" };
-        let name = format!("{}{dash}{settings}{view}-seen", self.live.scene().variant.name);
-        self.destination.write(&name, &self.live.picture())
+        let scene = self.live.scene();
+        let frame = scene.variant.animation.map(|_| scene.frame);
+        let rasterizer = scene.variant.rasterizer.map(|_| scene.rasterizer);
+        let name = format!("{}{view}-seen", picture_name(scene, frame, rasterizer, self.live.zoom()));
+        if let Err(failure) = self.destination.write(&name, &self.live.picture()) {
+            note(&format!("not saved: {failure}"));
+        }
     }
 
     /// Draws if something has changed, and shows it.
@@ -273,7 +306,9 @@ impl Viewer<'_> {
         let size = window.get_size();
         if self.shown.picture.is_none() {
             let begun = Instant::now();
-            self.shown.picture = Some(self.live.picture());
+            let whole = self.live.whole_picture();
+            self.shown.picture = Some(self.live.shown(whole.clone()));
+            self.shown.whole = Some(whole);
             self.shown.took = begun.elapsed();
             self.shown.count += 1;
             self.shown.slowest = self.shown.slowest.max(self.shown.took);
@@ -287,15 +322,17 @@ impl Viewer<'_> {
             lay_out(picture, size, buffer);
         }
         // Every time: what another window has covered is not kept.
-        window.update_with_buffer(buffer, size.0, size.1).map_err(no_window)?;
+        window
+            .update_with_buffer(buffer, size.0, size.1)
+            .map_err(|error| Failure::Runtime(format!("the window cannot be drawn on: {error}")))?;
         self.title(window);
         Ok(())
     }
 
     fn title(&mut self, window: &mut Window) {
         let under = self.pointer.and_then(|shown| {
-            let color = self.shown.picture.as_ref()?.get(shown.0, shown.1)?;
-            Some(format!(" · {}", Live::told(self.live.pixel_at(shown)?, color)))
+            let pixel = self.live.pixel_at(shown)?;
+            Some(format!(" · {}", Live::told(pixel, self.shown.whole.as_ref()?.get(pixel.0, pixel.1)?)))
         });
         let took = self.shown.took.as_secs_f64() * 1e3;
         let title = format!("{} · {took:.1} ms{}", self.live.status(), under.unwrap_or_default());
@@ -311,6 +348,9 @@ fn lay_out(picture: &Framebuffer, (width, height): (usize, usize), buffer: &mut 
     let layout = Layout::new((width, height), picture);
     buffer.clear();
     buffer.resize(width * height, BORDER);
+    if buffer.is_empty() {
+        return;
+    }
     let word =
         |color: Color| color.channels().iter().fold(0, |word, channel| word << 8 | u32::from(*channel));
     for (y, row) in (0..).zip(buffer.chunks_exact_mut(width)) {

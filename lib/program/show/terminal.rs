@@ -120,7 +120,7 @@ pub(super) fn choose(
     match asked {
         Asked::Auto | Asked::Kitty | Asked::Iterm | Asked::Sixel if output == Output::File => {
             Err(Failure::Usage(
-                "--show needs a terminal, and standard output is none: --show=blocks prints the picture nevertheless, in \
+                "standard output is not a terminal: --show=blocks prints the picture nevertheless, in \
                  characters with 24-bit color; --out FILE writes it into a file"
                     .to_owned(),
             ))
@@ -130,7 +130,9 @@ pub(super) fn choose(
         Asked::Sixel => Ok(How::Sixel.into()),
         Asked::Auto | Asked::Blocks => Ok(match found(output, &lookup) {
             // Only its colors count.
-            Choice { how: How::Kitty | How::Iterm | How::Sixel, .. } if asked == Asked::Blocks => ALL_COLORS.into(),
+            Choice { how: How::Kitty | How::Iterm | How::Sixel, .. } if asked == Asked::Blocks => {
+                ALL_COLORS.into()
+            }
             choice => choice,
         }),
     }
