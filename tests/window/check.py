@@ -226,6 +226,13 @@ def mistake(display, folder, binaries):
     print(f"  S: {saved[0].name}")
     program.key("Home", r"tilt = 30 ")
     program.shows(program.drawn(), "Home")
+    program.key("k")
+    program.wait(lambda: "tilt = 30 " not in program.title(), "knob that runs")
+    program.key("k")
+    program.key("Home", r"tilt = 30 ")
+    program.key("equal", "2×")
+    program.key("minus", r"^(?!.*×)")
+    print("  K, +, -: the knob runs, pixels grow")
 
     display.run("xdotool", "windowsize", "--sync", program.window, "1300", "1000")
     wanted = program.drawn()

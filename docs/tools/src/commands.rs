@@ -94,6 +94,9 @@ fn task(command: &str) -> Task {
     if words.iter().any(|word| word == "--show") {
         return Task::LeaveOut("needs a terminal");
     }
+    if words.iter().any(|word| word == "--window") {
+        return Task::LeaveOut("needs a display");
+    }
     match words.get(1).map(String::as_str) {
         Some("run" | "build") => Task::Run(words),
         Some("test") => match words.iter().position(|word| word == "--test").and_then(|at| words.get(at + 1))
