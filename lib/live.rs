@@ -13,7 +13,7 @@ use glam::{DVec2, dvec2};
 
 use crate::color::Color;
 use crate::figure::picture::{Zoom, difference, fill_blocks};
-use crate::figure::{Chapter, Fit, Given, Knob, Mistake, RasterizerChoice, Scene, Value, Variant};
+use crate::figure::{Animation, Chapter, Fit, Given, Knob, Mistake, RasterizerChoice, Scene, Value, Variant};
 use crate::files::FileError;
 use crate::framebuffer::Framebuffer;
 use crate::inspect::{History, Steps, history};
@@ -85,8 +85,6 @@ enum Motion {
     Sweep(u32),
 }
 
-/// Steps of a knob through its range, one way.
-const SWEEP_STEPS: u32 = 60;
 /// Degrees that the eye goes round when a model is dragged by a pixel.
 const DEGREES_PER_PIXEL: f64 = 0.5;
 /// Magnifications, one a notch.
@@ -156,7 +154,7 @@ impl<'a> Live<'a> {
     pub fn rate(&self) -> Option<u32> {
         match self.motion? {
             Motion::Frames => self.scene.variant.animation.map(|animation| animation.rate),
-            Motion::Sweep(_) => Some(30),
+            Motion::Sweep(_) => Some(Animation::SWEEP.rate),
         }
     }
 
@@ -251,12 +249,14 @@ impl<'a> Live<'a> {
                 self.scene.frame = (self.scene.frame + 1) % frames;
             }
             Some(Motion::Sweep(step)) => {
-                let fraction = f64::from(SWEEP_STEPS - step.abs_diff(SWEEP_STEPS)) / f64::from(SWEEP_STEPS);
+                // There and back again.
+                let last = Animation::SWEEP.frames;
+                let fraction = f64::from(last - step.abs_diff(last)) / f64::from(last);
                 let swept = self.knob().and_then(|(knob, _)| Some((knob, knob.at(fraction)?)));
                 if let Some((knob, value)) = swept {
                     self.scene.knobs.put(knob.name, value);
                 }
-                self.motion = Some(Motion::Sweep((step + 1) % (2 * SWEEP_STEPS)));
+                self.motion = Some(Motion::Sweep((step + 1) % (2 * last)));
             }
             None => {}
         }
@@ -476,7 +476,7 @@ fn moved(place: usize, places: i32, count: usize) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figure::{Animation, Canvas, Knobs};
+    use crate::figure::{Canvas, Knobs};
 
     const KNOBS: &[Knob] =
         &[Knob::number("level", 100.0, [0.0, 240.0], "", "-"), Knob::point("dot", [4.0, 6.0], "-")];

@@ -128,6 +128,11 @@ pub struct Animation {
     pub rate: u32,
 }
 
+impl Animation {
+    /// A knob that goes once through its range.
+    pub const SWEEP: Self = Self { frames: 60, rate: 20 };
+}
+
 /// Whether a variant is a deliberate mistake.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mistake {
@@ -244,8 +249,15 @@ impl Variant {
     }
 
     /// The same, with knobs.
+    ///
+    /// # Panics
+    /// If the drawing function gets none: [`Self::with_knobs`] is for figures without the pipeline.
     #[must_use]
     pub const fn knobs(self, knobs: &'static [Knob]) -> Self {
+        assert!(
+            !matches!(self.figure, Figure::Plain(_) | Figure::PlainModel(..)),
+            "its drawing function reads no knobs"
+        );
         Self { knobs, ..self }
     }
 

@@ -177,13 +177,10 @@ fn animate(variant: &Variant, request: &Request, destination: &Destination) -> R
     destination.write_animation(&name_of(&scene, request), |format| encode(format, animation, &draw))
 }
 
-/// How many frames a sweep has, and how fast they are shown.
-const SWEEP: Animation = Animation { frames: 60, rate: 20 };
-
 /// A scene with a knob at the place in its range that belongs to a frame of a sweep.
 fn swept(scene: &Scene<'_>, knob: &Knob, number: u32) -> Framebuffer {
     let mut options = scene.options(None);
-    let value = knob.at(f64::from(number) / f64::from(SWEEP.frames - 1));
+    let value = knob.at(f64::from(number) / f64::from(Animation::SWEEP.frames - 1));
     options.knobs.put(knob.name, value.unwrap_or(knob.default()));
     scene.variant.draw(&options)
 }
@@ -194,7 +191,7 @@ fn sweep(variant: &Variant, name: &str, request: &Request, destination: &Destina
     let scene = scene_of(variant, request, &load(request)?)?;
     let draw = |number| enlarged(swept(&scene, knob, number), request.zoom);
     let file = format!("{}-sweep-{name}", name_of(&scene, request));
-    destination.write_animation(&file, |format| encode(format, SWEEP, &draw))
+    destination.write_animation(&file, |format| encode(format, Animation::SWEEP, &draw))
 }
 
 /// The same beside another variant, and where the two differ.
@@ -212,7 +209,7 @@ fn sweep_comparison(
     panels(0).ok_or_else(|| not_comparable(&first, &second))?;
     let draw = |number| panels(number).map_or_else(|| first.draw(), |(picture, _)| picture);
     let file = format!("{}-sweep-{name}--{}", name_of(&first, request), that.name);
-    destination.write_animation(&file, |format| encode(format, SWEEP, &draw))
+    destination.write_animation(&file, |format| encode(format, Animation::SWEEP, &draw))
 }
 
 /// Prints the history of a pixel; nothing is written but text.
