@@ -598,6 +598,9 @@ mod tests {
             assert_eq!(levels(&events), expected);
         }
         assert_eq!(play(live(), &events).rate(), Some(7));
+        let reset =
+            play(live(), &[&events[..], &[Event::Tick, Event::Magnify(1, (0, 0)), Event::Reset]].concat());
+        assert_eq!((reset.scene.frame, reset.rate(), reset.zoom()), (0, None, None));
         events.extend([Event::Run, Event::Tick]);
         assert_eq!(levels(&events), 0, "it stands");
 

@@ -536,7 +536,9 @@ mod tests {
         let mut first = Knobs::new(KNOBS, (64, 48));
         first.set("tilt=50").expect("in range");
         first.set("bits=2").expect("in range");
-        let mut second = Knobs::new(&KNOBS[..1], (64, 48));
+        const OTHERS: &[Knob] =
+            &[KNOBS[0], Knob::switch("bits", true, "of the same name, and something else")];
+        let mut second = Knobs::new(OTHERS, (64, 48));
         second.take_over(&first);
         assert_eq!(second.changed(), ["tilt=50"]);
     }
