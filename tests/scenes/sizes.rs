@@ -1,10 +1,7 @@
 //! `--size` means the same for every variant: a scene scales, keeps its proportions and lies in the middle; what is about
 //! single pixels is the same picture with more or less around it.
 
-#[path = "support/chapters.rs"]
-mod chapters;
-
-use chapters::{CHAPTERS, variant};
+use crate::chapters::{CHAPTERS, variant};
 use rasterbook::figure::picture::paste;
 use rasterbook::figure::{DrawOptions, Variant};
 use rasterbook::inspect::{Steps, history};
