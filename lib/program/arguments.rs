@@ -7,7 +7,7 @@ use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, ArgMatches, Command};
 
-use super::options::command;
+use super::options::{SHORT, command};
 use super::show::Asked;
 use crate::figure::picture::Zoom;
 use crate::figure::{Chapter, RasterizerChoice};
@@ -146,16 +146,14 @@ fn comparison(matches: &ArgMatches) -> Option<Comparison> {
 /// All settings of knobs: `--set`, and the options that are short for some of them.
 fn settings(matches: &ArgMatches) -> Vec<String> {
     let given = matches.get_many::<String>("set").into_iter().flatten().cloned();
-    let angles = |id: &str, [first, second]: [&str; 2]| {
-        let pair = matches.get_one::<[f64; 2]>(id);
-        pair.map(|[a, b]| [format!("{first}={a}"), format!("{second}={b}")]).into_iter().flatten()
-    };
-    let background = matches.get_one::<String>("background").map(|color| format!("background={color}"));
-    given
-        .chain(angles("eye", ["azimuth", "elevation"]))
-        .chain(angles("light", ["light-azimuth", "light-elevation"]))
-        .chain(background)
-        .collect()
+    let short = SHORT.iter().flat_map(|&(option, knobs)| {
+        let values: Vec<String> = match matches.try_get_one::<[f64; 2]>(option) {
+            Ok(angles) => angles.into_iter().flatten().map(f64::to_string).collect(),
+            Err(_) => matches.get_one::<String>(option).cloned().into_iter().collect(),
+        };
+        knobs.iter().zip(values).map(|(knob, value)| format!("{knob}={value}")).collect::<Vec<_>>()
+    });
+    given.chain(short).collect()
 }
 
 #[cfg(test)]

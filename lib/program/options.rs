@@ -127,10 +127,17 @@ fn subject(chapter: &Chapter) -> [Arg; 4] {
     .map(|argument| argument.hide(is_hidden))
 }
 
+/// Options that are short for knobs, and which knobs they set.
+pub(super) const SHORT: [(&str, &[&str]); 3] = [
+    ("eye", &["azimuth", "elevation"]),
+    ("light", &["light-azimuth", "light-elevation"]),
+    ("background", &["background"]),
+];
+
 /// From where a model is seen and lit: short for some knobs.
 fn view(chapter: &Chapter) -> [Arg; 3] {
     let mut knobs = chapter.variants.iter().flat_map(|variant| variant.knobs);
-    let is_hidden = !knobs.any(|knob| knob.name == "azimuth");
+    let is_hidden = !knobs.any(|knob| knob.name == SHORT[0].1[0]);
     [
         option("eye", "A,E", "Look at the model from azimuth A and elevation E, in degrees")
             .value_parser(parse_angles)

@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::animation::progress_bar;
 use super::arguments::Request;
 use super::failure::Failure;
-use super::options::knob_list;
+use super::options::{SHORT, knob_list};
 use super::output::note;
 use crate::color::Color;
 use crate::figure::picture::Zoom;
@@ -120,13 +120,12 @@ fn rasterizer_of(variant: &Variant, request: &Request) -> Result<RasterizerChoic
 /// Why a knob was not set, and which there are.
 fn not_set(variant: &Variant, error: &KnobError) -> Failure {
     // Who gave one of the short options has not named a knob.
+    let sets = |name: &String| SHORT.iter().find(|(_, knobs)| knobs.contains(&name.as_str()));
     let short = match error {
-        KnobError::Unknown(name) if ["azimuth", "elevation"].contains(&name.as_str()) => " (--eye sets it)",
-        KnobError::Unknown(name) if ["light-azimuth", "light-elevation"].contains(&name.as_str()) => {
-            " (--light sets it)"
+        KnobError::Unknown(name) => {
+            sets(name).map_or_else(String::new, |(option, _)| format!(" (--{option} sets it)"))
         }
-        KnobError::Unknown(name) if name == "background" => " (--background sets it)",
-        _ => "",
+        _ => String::new(),
     };
     Failure::Usage(format!("'{}': {error}{short}\n{}", variant.name, knob_list(variant)))
 }
