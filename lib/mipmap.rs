@@ -35,10 +35,15 @@ use crate::texture::{AddressMode, Texture, bilinear};
 /// Source: L. Williams, Pyramidal parametrics, 1983.
 #[derive(Clone, Debug)]
 pub struct MipMaps {
-    levels: Arc<[Texture]>,
-    /// All rows of all levels, one after the other: the level, and the row in it.
-    rows: Arc<[(u32, u32)]>,
+    levels: Arc<[Level]>,
+    /// The texels of all levels, one level above the other, each row as long as the longest: 2 to the power of
+    /// `row_bits`.
+    texels: Arc<[Color]>,
+    row_bits: u32,
 }
+
+/// Where a level is: its width and height in texels, and how many rows lie below it.
+type Level = [f64; 3];
 
 impl MipMaps {
     // ANCHOR: mip_maps
@@ -46,14 +51,20 @@ impl MipMaps {
     /// high; an odd last column or row is left out).
     #[must_use]
     pub fn new(texture: &Texture) -> Self {
-        let mut levels = vec![texture.clone()];
-        while let Some(last) = levels.last().filter(|level| level.width().max(level.height()) > 1) {
-            levels.push(halved(last));
+        let row_bits = texture.width().next_power_of_two().trailing_zeros();
+        let (mut levels, mut texels) = (Vec::new(), Vec::new());
+        let mut next = Some(texture.clone());
+        while let Some(level) = next {
+            let [width, height, below] =
+                [level.width() as usize, level.height() as usize, texels.len() >> row_bits];
+            levels.push([width as f64, height as f64, below as f64]);
+            for row in 0..height {
+                texels.extend((0..width).map(|column| level.color(column, row)));
+                texels.resize((below + row + 1) << row_bits, Color::BLACK);
+            }
+            next = (width.max(height) > 1).then(|| halved(&level));
         }
-        let rows = (0_u32..)
-            .zip(&levels)
-            .flat_map(|(level, texture)| (0..texture.height()).map(move |row| (level, row)));
-        Self { rows: rows.collect(), levels: levels.into() }
+        Self { levels: levels.into(), texels: texels.into(), row_bits }
     }
     // ANCHOR_END: mip_maps
 
@@ -79,9 +90,9 @@ impl MipMaps {
     /// Source: Direct3D 11.3 functional specification, 7.18.11.
     #[must_use]
     pub fn level_of_detail<R: Real>(&self, uv_dx: [R; 2], uv_dy: [R; 2]) -> R {
-        let size = [self.levels[0].width(), self.levels[0].height()];
+        let [width, height, _] = self.levels[0].map(R::of);
         let length = |way: [R; 2]| {
-            let [x, y]: [R; 2] = from_fn(|i| way[i] * R::of(f64::from(size[i])));
+            let [x, y] = [way[0] * width, way[1] * height];
             (x * x + y * y).sqrt()
         };
         let texels = length(uv_dx).max(length(uv_dy));
@@ -100,10 +111,9 @@ impl MipMaps {
     #[must_use]
     pub fn bilinear<R: Real>(&self, uv: [R; 2], level: R, mode: AddressMode) -> [R; 3] {
         let level = (self.clamped(level) + R::of(0.5)).floor();
-        let size: [R; 2] = R::gather(level, R::of(0.0), |level, _| self.size_and_start(level).0);
-        let [start]: [R; 1] = R::gather(level, R::of(0.0), |level, _| [self.size_and_start(level).1]);
-        bilinear(uv, size, mode, |column, row| {
-            R::gather(column, start + row, |column, row| self.texel(column, row))
+        let [width, height, below] = R::gather(level, R::of(0.0), |level, _| self.levels[level]);
+        bilinear(uv, [width, height], mode, |column, row| {
+            R::channels(R::gather_color(column, below + row, self.row_bits, &self.texels))
         })
     }
 
@@ -114,19 +124,6 @@ impl MipMaps {
         let level = self.clamped(level);
         let [low, high] = [level.floor(), self.clamped(level.floor() + R::of(1.0))];
         linear(self.bilinear(uv, low, mode), self.bilinear(uv, high, mode), level - low)
-    }
-
-    /// The size of a level, and how many rows the levels before it have.
-    fn size_and_start(&self, level: usize) -> ([f64; 2], f64) {
-        let [width, height] = [self.levels[level].width(), self.levels[level].height()].map(f64::from);
-        let before: u32 = self.levels[..level].iter().map(Texture::height).sum();
-        ([width, height], f64::from(before))
-    }
-
-    /// The channels of a texel, its row counted through all levels.
-    fn texel(&self, column: usize, row: usize) -> [f64; 3] {
-        let (level, row) = self.rows[row];
-        self.levels[level as usize].texel(column, row as usize)
     }
 }
 
@@ -160,7 +157,7 @@ mod tests {
     fn down_to_one_texel() {
         let sizes = |width, height| {
             let maps = MipMaps::new(&ramp(width, height));
-            maps.levels.iter().map(|level| (level.width(), level.height())).collect::<Vec<_>>()
+            maps.levels.iter().map(|&[width, height, _]| (width as u32, height as u32)).collect::<Vec<_>>()
         };
         assert_eq!(sizes(8, 4), [(8, 4), (4, 2), (2, 1), (1, 1)]);
         assert_eq!(sizes(5, 3), [(5, 3), (2, 1), (1, 1)]);
@@ -171,8 +168,8 @@ mod tests {
     fn a_level_is_the_mean_of_the_one_before() {
         let maps = MipMaps::new(&ramp(4, 2));
         // 0 4 8 12 and 16 20 24 28: the mean of 0, 4, 16 and 20 is 10.
-        assert_eq!(maps.levels[1], Texture::new(2, 1, vec![Color::gray(10), Color::gray(18)]));
-        assert_eq!(maps.levels[2], Texture::new(1, 1, vec![Color::gray(14)]));
+        let at = |u: f64, level: f64| maps.bilinear([u, 0.5], level, AddressMode::Clamp)[0];
+        assert_eq!([at(0.25, 1.0), at(0.75, 1.0), at(0.5, 2.0)], [10.0, 18.0, 14.0]);
     }
 
     #[test]
@@ -194,7 +191,8 @@ mod tests {
         let [first, second] = [at(0.0), at(1.0)];
         assert_eq!(at(0.25), first + (second - first) * 0.25);
         assert_eq!(maps.bilinear([0.5, 0.5], 0.6, AddressMode::Clamp)[0], second);
-        let last = maps.levels[2].texel(0, 0);
+        let last = maps.bilinear([0.5, 0.5], 2.0, AddressMode::Clamp);
+        assert_eq!(last, [30.0; 3], "the mean of all");
         for (level, expected) in
             [(-5.0, at(0.0)), (2.5, last[0]), (99.0, last[0]), (f64::INFINITY, last[0]), (f64::NAN, at(0.0))]
         {

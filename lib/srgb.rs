@@ -37,18 +37,32 @@ static LIGHT: LazyLock<[f64; 256]> = LazyLock::new(|| from_fn(|value| light_of(v
 /// The light half-way, in stored numbers, between each value and the next: from there on the next one is nearer.
 static BORDERS: LazyLock<[f64; 255]> =
     LazyLock::new(|| from_fn(|value| light_of((value as f64 + 0.5) / 255.0)));
+
+/// For each of 4096 equal steps of light, the value of its darkest light. No step holds more than one border, so that the
+/// value of any light in it is this one or the next.
+static STEPS: LazyLock<[u8; 4096]> =
+    LazyLock::new(|| from_fn(|step| BORDERS.partition_point(|&border| border <= step as f64 / 4096.0) as u8));
 // ANCHOR_END: tables
 
 /// Stored channels, whole numbers in 0..=255 → light in 0..=1. Fractions are cut off, values outside limited.
 #[must_use]
+#[inline]
 pub fn decode<R: Real>(stored: [R; 3]) -> [R; 3] {
-    stored.map(|channel| channel.map(|value| LIGHT[usize::from(value as u8)]))
+    let light: &[f64; 256] = &LIGHT;
+    from_fn(|k| stored[k].map(|value| light[usize::from(value as u8)]))
 }
 
 /// Light, 0..=1 → the nearest stored channels, whole numbers in 0..=255; more light than 1 gives 255, NaN 0.
 #[must_use]
+#[inline]
 pub fn encode<R: Real>(light: [R; 3]) -> [R; 3] {
-    light.map(|amount| amount.map(|amount| BORDERS.partition_point(|&border| border <= amount) as f64))
+    let (steps, borders): (&[u8; 4096], &[f64; 255]) = (&STEPS, &BORDERS);
+    let value = |amount: f64| {
+        let value = steps[((amount * 4096.0) as usize).min(4095)];
+        let is_next = borders.get(usize::from(value)).is_some_and(|&border| border <= amount);
+        f64::from(value) + f64::from(u8::from(is_next))
+    };
+    from_fn(|k| light[k].map(value))
 }
 
 #[cfg(test)]
@@ -60,6 +74,21 @@ mod tests {
         for value in 0..=255_u8 {
             let stored = f64::from(value);
             assert_eq!(encode(decode([stored; 3])), [stored; 3]);
+        }
+    }
+
+    #[test]
+    fn light_at_a_border_is_the_next_value() {
+        for (value, &border) in BORDERS.iter().enumerate() {
+            let at = |amount: f64| encode([amount; 3])[0] as usize;
+            assert_eq!(
+                [at(border.next_down()), at(border), at(border.next_up())],
+                [value, value + 1, value + 1]
+            );
+        }
+        for step in 0..4095 {
+            let of = |step: usize| i32::from(STEPS[step]);
+            assert!(of(step + 1) - of(step) <= 1, "step {step}");
         }
     }
 

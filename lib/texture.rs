@@ -177,10 +177,16 @@ impl Texture {
         [R::from(self.columns), R::from(self.rows)]
     }
 
+    /// A texel by its column and row.
+    #[inline]
+    pub(crate) fn color(&self, column: usize, row: usize) -> Color {
+        self.texels[(row << self.row_bits) + column]
+    }
+
     /// The channels of a texel, in 0..=255.
     #[inline]
     pub(crate) fn texel(&self, column: usize, row: usize) -> [f64; 3] {
-        self.texels[(row << self.row_bits) + column].to_f64()
+        self.color(column, row).to_f64()
     }
 }
 

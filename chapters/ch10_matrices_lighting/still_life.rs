@@ -1,6 +1,7 @@
 //! Everything at once: matrices, a look-at camera, light, textures with mip maps, a depth buffer, and blending.
 
 use std::array::from_fn;
+use std::sync::LazyLock;
 
 use glam::{DMat4, DVec3, dvec3};
 use rasterbook::area::Winding;
@@ -183,6 +184,9 @@ impl Board {
     }
 }
 
+/// The board's texture, made once for all frames.
+static SQUARES: LazyLock<MipMaps> = LazyLock::new(|| MipMaps::new(&squares()));
+
 /// Two dark squares and two bright ones of wood, their grain in two directions.
 fn squares() -> Texture {
     let wood = assets::texture("wood.png").expect("an asset");
@@ -257,6 +261,8 @@ pub(super) fn still_life(canvas: &mut Canvas) {
         load: LoadOp::Clear,
         ..RenderState::default()
     };
+    let [wood, numbers] =
+        ["wood.png", "numbers.png"].map(|name| MipMaps::new(&assets::texture(name).expect("an asset")));
     let mut load = LoadOp::Clear;
     // First what the board reflects, upside down: fronts run the other way round there.
     let mirror = scale(dvec3(1.0, -1.0, 1.0));
@@ -266,7 +272,7 @@ pub(super) fn still_life(canvas: &mut Canvas) {
             draw_board(canvas, &view, &stood, knobs.number("opacity"));
         }
         for ((model, texture, _, _, tint), (world_from_model, _)) in PIECES.iter().zip(&stood) {
-            let texture = MipMaps::new(&assets::texture(texture).expect("an asset"));
+            let texture = if *texture == "wood.png" { wood.clone() } else { numbers.clone() };
             let repeat = if *model == "pawn.obj" { [3.0, 1.0] } else { [1.0, 1.0] };
             let world_from_model = reflect * *world_from_model;
             let thing = Thing { view: view.clone(), world_from_model, texture, tint: *tint, repeat };
@@ -280,7 +286,7 @@ pub(super) fn still_life(canvas: &mut Canvas) {
 
 fn draw_board(canvas: &mut Canvas, view: &View, stood: &[(DMat4, Vec<Ball>)], opacity: f64) {
     let balls = stood.iter().flat_map(|(_, balls)| balls.clone()).collect();
-    let board = Board { view: view.clone(), texture: MipMaps::new(&squares()), balls, opacity };
+    let board = Board { view: view.clone(), texture: SQUARES.clone(), balls, opacity };
     let far = 60.0;
     let corners = vec![[-far, -far], [far, -far], [far, far], [-far, far]];
     let state = RenderState {

@@ -5,6 +5,7 @@
 
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
+use std::sync::{Mutex, PoisonError};
 
 use glam::dvec3;
 use image::ImageFormat;
@@ -56,7 +57,10 @@ pub fn model(name: &str) -> Result<Model, FileError> {
 /// # Errors
 /// If there is no such model.
 pub fn model_with(name: &str, style: NormalStyle) -> Result<Model, FileError> {
-    Model::parse(bytes_of(name)?, name.as_ref(), style).map(|(model, _)| model)
+    static READ: Read<(String, NormalStyle), Model> = Mutex::new(Vec::new());
+    once(&READ, (name.to_owned(), style), || {
+        Model::parse(bytes_of(name)?, name.as_ref(), style).map(|(model, _)| model)
+    })
 }
 
 /// A texture of `assets/`, such as `bricks.png`.
@@ -64,7 +68,28 @@ pub fn model_with(name: &str, style: NormalStyle) -> Result<Model, FileError> {
 /// # Errors
 /// If there is no such texture.
 pub fn texture(name: &str) -> Result<Texture, FileError> {
-    decode_texture(bytes_of(name)?, name.as_ref()).map(|(texture, _)| texture)
+    static READ: Read<String, Texture> = Mutex::new(Vec::new());
+    once(&READ, name.to_owned(), || {
+        decode_texture(bytes_of(name)?, name.as_ref()).map(|(texture, _)| texture)
+    })
+}
+
+/// What has been read already, by name: reading a file takes longer than drawing a picture with it.
+type Read<K, T> = Mutex<Vec<(K, T)>>;
+
+/// What `read` gives; the second time, what it gave the first time.
+fn once<K: PartialEq, T: Clone>(
+    known: &Read<K, T>,
+    key: K,
+    read: impl FnOnce() -> Result<T, FileError>,
+) -> Result<T, FileError> {
+    let mut known = known.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((_, value)) = known.iter().find(|(name, _)| *name == key) {
+        return Ok(value.clone());
+    }
+    let value = read()?;
+    known.push((key, value.clone()));
+    Ok(value)
 }
 
 /// All files of `assets/` but its page: names and contents.
