@@ -491,9 +491,10 @@ impl<'a> Live<'a> {
     /// The command that draws what is shown, not magnified: `cargo run --bin ch05_perspective_correct -- affine --set tilt=60`.
     #[must_use]
     pub fn command(&self) -> String {
-        let Scene { variant, ref knobs, frame, size, rasterizer, .. } = self.scene;
-        let shown = self.remedy().filter(|_| self.view == View::Remedy).unwrap_or(variant);
-        let mut words = vec![format!("cargo run --bin {} -- {}", self.chapter.name, shown.name)];
+        let remedied = self.remedied().filter(|_| self.view == View::Remedy);
+        let Scene { variant, ref knobs, frame, size, rasterizer, .. } =
+            *remedied.as_ref().unwrap_or(&self.scene);
+        let mut words = vec![format!("cargo run --bin {} -- {}", self.chapter.name, variant.name)];
         words.extend(knobs.changed().iter().map(|setting| format!("--set {setting}")));
         if frame > 0 {
             words.push(format!("--frame {frame}"));

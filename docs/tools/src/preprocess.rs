@@ -1,6 +1,7 @@
 //! Makes pages that show well on a code host into pages of a book that is whole by itself.
 //!
 //! - Pictures of `tests/snapshots` are copied into the book, and centered.
+//! - Below `<!-- live -->` a picture of a chapter's variant becomes a live figure, if `docs/live/build` has run.
 //! - Drawings (`figures/NAME.svg`) are put into the page, where they take the colors of its theme.
 //! - A note for those who read the page on a code host, where nothing is put in, is left out.
 //! - Other files of the repository that a page links to become pages with line numbers.
@@ -38,18 +39,26 @@ pub fn run() -> Result<(), Errors> {
 /// What begins a note that is not for the book.
 const HOST_NOTE: &str = "<!-- on a code host -->";
 
+/// What stands above a picture that is to be live. On a code host it is a comment.
+const LIVE: &str = "<!-- live -->";
+
+/// The chapters, compiled for pages.
+const MODULE: &str = "target/live/rasterbook.wasm";
+
 struct Work {
     /// `docs/src`.
     source: PathBuf,
     copies: BTreeSet<PathBuf>,
     /// The page at work, relative to `source`.
     page: PathBuf,
+    /// Whether the next picture is to be live.
+    is_live: bool,
     errors: Errors,
 }
 
 impl Work {
     fn new(source: PathBuf) -> Self {
-        Self { source, copies: BTreeSet::new(), page: PathBuf::new(), errors: Vec::new() }
+        Self { source, copies: BTreeSet::new(), page: PathBuf::new(), is_live: false, errors: Vec::new() }
     }
 
     fn items(&mut self, items: &mut Value) {
@@ -76,6 +85,10 @@ impl Work {
             if line == HOST_NOTE {
                 // Up to the blank line below it.
                 lines.by_ref().find(|line| line.is_empty());
+                continue;
+            }
+            if line == LIVE {
+                self.is_live = true;
                 continue;
             }
             let trimmed = line.trim_start();
@@ -190,9 +203,28 @@ impl Work {
             self.error(&format!("no picture {target}"));
             return String::new();
         };
+        let live = if std::mem::take(&mut self.is_live) { self.live(target) } else { String::new() };
         let target = self.target(target);
         format!(
-            "<figure><a href=\"{target}\"><img src=\"{target}\" alt=\"{alternative}\" {size}></a></figure>"
+            "<figure{live}><a href=\"{target}\"><img src=\"{target}\" alt=\"{alternative}\" {size}></a></figure>"
+        )
+    }
+
+    /// What makes a picture a live figure: whose it is, and where the module is. Its name changes with its content, so
+    /// that no browser takes an old one for it.
+    fn live(&mut self, target: &str) -> String {
+        let Some((chapter, variant, frame)) = variant_of(target) else {
+            self.error(&format!("{target} is no variant's own picture: it cannot be live"));
+            return String::new();
+        };
+        let Ok(module) = fs::read(repository().join(MODULE)) else {
+            return String::new();
+        };
+        let file = format!("live-{:016x}.wasm", fingerprint(&module));
+        self.copy(&self.source.join("files").join(&file), &module);
+        format!(
+            " class=\"live\" data-chapter=\"{chapter}\" data-variant=\"{variant}\" data-frame=\"{frame}\" \
+             data-module=\"files/{file}\""
         )
     }
 
@@ -251,6 +283,21 @@ impl Work {
             }
         }
     }
+}
+
+/// The chapter, the variant and the frame that a picture shows; `None` if it is magnified, or beside another one.
+fn variant_of(target: &str) -> Option<(&str, &str, u32)> {
+    let name = target.rsplit('/').next()?.strip_suffix(".snap.png")?;
+    let (chapter, variant) = name.split_once("__")?;
+    let (variant, frame) = variant.split_once('@').unwrap_or((variant, "0"));
+    let is_alone = !variant.contains("--") && !variant.contains("-zoom");
+    is_alone.then_some((chapter, variant, frame.parse().ok()?))
+}
+
+/// A number that another content has not, as far as one can tell: FNV-1a.
+fn fingerprint(bytes: &[u8]) -> u64 {
+    let mix = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x100_0000_01b3);
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, mix)
 }
 
 /// A path without `..`.
