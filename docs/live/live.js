@@ -98,7 +98,9 @@
             this.id = id;
             /** @type {Description} */
             this.state = this.describe();
-            [this.width, this.height] = this.state.size;
+            /** Of the picture as it is drawn now. */
+            this.width = this.state.size[0];
+            this.height = this.state.size[1];
             this.factor = 1;
             this.isDue = false;
             this.isMoving = false;
@@ -107,14 +109,24 @@
             /** What is to be done when the state has changed. @type {(() => void)[]} */
             this.updates = [];
             this.canvas = make("canvas", { tabindex: "0", role: "img" });
+            // As large as ever while it has fewer pixels.
+            this.canvas.style.width = `${this.width}px`;
+            this.canvas.style.aspectRatio = `${this.width} / ${this.height}`;
             const context = this.canvas.getContext("2d", { willReadFrequently: true });
             if (!context) throw new Error("no canvas");
             this.context = context;
             this.stage = make("div", { class: "stage" }, this.canvas);
+            const side = `${(2 * LOUPE.reach + 1) * LOUPE.scale}`;
+            this.glass = make("canvas", { width: side, height: side });
             this.told = make("output", { class: "told" });
+            this.loupe = make("div", { class: "loupe" }, this.glass, this.told);
+            this.loupe.hidden = true;
+            this.history = make("pre", { tabindex: "0" }, "Click a pixel of the picture.");
+            this.about = make("summary", {}, "What happened at a pixel");
+            this.box = make("details", { class: "history" }, this.about, this.history);
             this.addPoints();
-            this.addLoupe();
-            const rest = [this.bar(), this.knobs(), this.historyBox(), this.commandBox()];
+            this.stage.append(this.loupe);
+            const rest = [this.bar(), this.knobs(), this.box, this.commandBox()];
             const running = make("div", { class: "running" }, this.stage, ...rest);
             // Arrow keys are ours here; elsewhere on the page they turn to the next one.
             running.addEventListener("keydown", (event) => event.stopPropagation());
@@ -151,7 +163,7 @@
         rest() {
             this.isMoving = false;
             clearTimeout(this.resting);
-            if (this.factor > 1) this.draw();
+            this.draw();
         }
 
         /** Draws before the screen is shown next. */
@@ -191,6 +203,7 @@
             const keys = "Arrow keys choose a pixel, Enter tells its history.";
             this.canvas.setAttribute("aria-label", `${this.state.look}. ${knobs}. ${keys}`);
             for (const update of this.updates) update();
+            this.remember();
             this.play();
         }
 
@@ -460,21 +473,13 @@
             this.updates.push(() => this.loupe.hidden || this.showLoupe());
         }
 
-        addLoupe() {
-            const side = (2 * LOUPE.reach + 1) * LOUPE.scale;
-            this.glass = make("canvas", { width: `${side}`, height: `${side}` });
-            this.loupe = make("div", { class: "loupe" }, this.glass, this.told);
-            this.loupe.hidden = true;
-            this.stage.append(this.loupe);
-        }
-
         hideLoupe() {
             this.loupe.hidden = true;
         }
 
         /** The pixels around the cursor, large, with a grid; its place and color. */
         showLoupe() {
-            const glass = /** @type {HTMLCanvasElement} */ (this.glass).getContext("2d");
+            const glass = this.glass.getContext("2d");
             if (!glass) return;
             const { x, y } = this.cursor;
             const { reach, scale } = LOUPE;
@@ -506,20 +511,20 @@
 
         // ------------------------------------------------------------ words
 
-        historyBox() {
-            this.history = make("pre", { tabindex: "0" }, "Click a pixel of the picture.");
-            this.about = make("summary", {}, "What happened at a pixel");
-            this.box = make("details", { class: "history" }, this.about, this.history);
-            return this.box;
-        }
-
         /** The history of the pixel at the cursor. */
         tell() {
-            const { x, y } = this.cursor;
+            this.asked = { ...this.cursor };
+            this.box.open = true;
+            this.remember();
+        }
+
+        /** The history of the pixel that was asked for, as it is now. */
+        remember() {
+            if (!this.asked || !this.box.open || this.isMoving) return;
+            const { x, y } = this.asked;
             const place = this.module.exports.history(this.id, x, y);
-            /** @type {HTMLElement} */ (this.history).textContent = this.module.read(place).trimEnd();
-            /** @type {HTMLElement} */ (this.about).textContent = `What happened at the pixel (${x}, ${y})`;
-            /** @type {HTMLDetailsElement} */ (this.box).open = true;
+            this.history.textContent = this.module.read(place).trimEnd();
+            this.about.textContent = `What happened at the pixel (${x}, ${y})`;
         }
 
         commandBox() {

@@ -188,6 +188,8 @@ def look_at_views(figure):
     press = "ROOT.querySelectorAll('.views button')[%d].click()"
     figure.evaluate(press % 1)
     figure.is_native("remedy")
+    # As the knobs stand now, nothing may be wrong; at their defaults something is.
+    reset(figure)
     figure.evaluate(press % 2)
     figure.settle()
     magenta = figure.evaluate("""((canvas) => {
@@ -225,11 +227,14 @@ def use_keys(figure):
     check(figure.evaluate("ROOT.querySelector('.history').open"), f"{figure.name}: Enter tells no history")
     for selector in [".point", ".knob input[type=range]"]:
         if figure.evaluate(f"ROOT.querySelector('{selector}') !== null"):
-            before = figure.command()
+            before, after = figure.command(), None
             figure.evaluate(f"ROOT.querySelector('{selector}').focus()")
-            figure.page.press("ArrowLeft")
-            figure.settle()
-            check(figure.command() != before, f"{figure.name}: an arrow key does nothing to {selector}")
+            # It may stand at one end of its range.
+            for key in ("ArrowLeft", "ArrowRight"):
+                figure.page.press(key)
+                figure.settle()
+                after = after if after not in (None, before) else figure.command()
+            check(after != before, f"{figure.name}: an arrow key does nothing to {selector}: {after}")
     unnamed = figure.evaluate("""[...ROOT.querySelectorAll('button, input, select, canvas')].filter((it) =>
         !(it.ariaLabel || it.labels?.length || it.textContent.trim()) || it.tabIndex < 0).length""")
     check(unnamed in (0, 1), f"{figure.name}: {unnamed} controls have no name or no place in the order")
@@ -293,8 +298,13 @@ def take_screenshots(page, name, folder):
         for scheme in ("light", "dark"):
             page.prefer(prefers_color_scheme=scheme)
             theme = {"light": "light", "dark": "coal"}[scheme]
-            page.evaluate(f"document.documentElement.className = '{theme} js'")
             page.resize(width, 1000)
+            page.call("Page.reload")
+            page.wait("document.readyState === 'complete'")
+            page.evaluate(f"document.documentElement.className = '{theme} js'")
+            for index in range(page.evaluate(f"{FIGURES}.length")):
+                page.evaluate(f"{FIGURES}[{index}].scrollIntoView()")
+                page.wait(f"{FIGURES}[{index}].classList.contains('runs')", 60)
             height = page.evaluate("document.documentElement.scrollHeight")
             page.resize(width, min(16000, height))
             time.sleep(0.3)
