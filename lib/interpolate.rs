@@ -23,15 +23,16 @@ use crate::scanline::{Edge, Half, Split, split};
 use crate::scissor::Scissor;
 
 // ANCHOR: barycentric_weights
-/// How much each vertex of a triangle weighs at the point p: the area of the small triangle opposite to the vertex, as
-/// a part of the whole. The three weights sum to 1; one is negative beyond the edge opposite to its vertex.
+/// How much each vertex of a triangle weighs at the point p: the area of the small triangle opposite to
+/// the vertex, divided by the whole. The three weights sum to 1; one is negative beyond the edge opposite
+/// to its vertex.
 ///
 /// ```text
-///            C                 w_A = area(P, B, C) / area(A, B, C)
-///           ╱│╲                w_B = area(A, P, C) / area(A, B, C)
-///          ╱ │ ╲               w_C = area(A, B, P) / area(A, B, C)
+///            C                 α = area(P, B, C) / area(A, B, C)
+///           ╱│╲                β = area(A, P, C) / area(A, B, C)
+///          ╱ │ ╲               γ = area(A, B, P) / area(A, B, C)
 ///         ╱  P  ╲
-///        ╱ ╱   ╲ ╲             P = w_A A + w_B B + w_C C
+///        ╱ ╱   ╲ ╲             P = α A + β B + γ C
 ///       A ───────── B
 /// ```
 ///
