@@ -1,4 +1,4 @@
-//! Triangles by edge functions: for each pixel, on which side of the three edges is its center?
+//! Triangles by edge functions: for each pixel, on which side of each edge is its center?
 
 use glam::DVec2;
 use rasterbook::exact::edge::Coverage;
@@ -14,7 +14,7 @@ pub(super) const BOUNDING_BOX: &[Knob] = &[
     Knob::point(
         "a",
         [84.8, 73.6],
-        "make the triangle long and aslant: most pixels of the box are asked in vain",
+        "make the triangle long and slanted: most pixels of the box are tested in vain",
     ),
     Knob::point(
         "b",
@@ -92,7 +92,7 @@ pub(super) fn shared_edge(framebuffer: &mut Framebuffer, knobs: &Knobs) {
 // ANCHOR_END: shared_edge
 
 // ANCHOR: top_left
-/// The hexagon by edge functions: a center on a shared edge belongs to one side, by the top-left rule.
+/// The hexagon by edge functions: a center on a shared edge belongs to one triangle, by the top-left rule.
 pub(super) fn top_left(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     hexagon(framebuffer, knobs.point("center") / FACTOR, |triangle, scissor, emit| {
         let Some(coverage) = Coverage::new(triangle) else { return };
