@@ -169,7 +169,8 @@ const SUBPIXELS: &[Knob] = &[Knob::color(
 )];
 
 // ANCHOR: subpixels
-/// A screen of 6×4 pixels: the lamps, and what they add up to. The upper left pixel has the knob's color.
+/// A screen of 6×4 pixels: the lamps, and what they add up to. The upper left pixel has the knob's
+/// color.
 fn subpixels(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     const CELL: i32 = 52;
     let mut screen = COLORS;

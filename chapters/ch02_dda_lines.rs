@@ -104,15 +104,16 @@ const OCTANTS: [Color; 8] = [
 ];
 
 // ANCHOR: rays
-/// Rays from the middle to points all round a square, six in each octant; all are rotated by an angle in
-/// degrees. `fit` scales them to the size of the picture.
+/// Rays from the middle to points all round a square, six in each octant; all are rotated by an
+/// angle in degrees. `fit` scales them to the size of the picture.
 fn rays(framebuffer: &mut Framebuffer, axis: StepAxis, turn: f64) {
     let fit = Fit::new(framebuffer.rect(), [480.0, 480.0]);
     let (sin, cos) = libm::sincos(turn * PI / 180.0);
     let center = dvec2(240.0, 240.0);
     for (octant, color) in OCTANTS.into_iter().enumerate() {
         for i in 0..6 {
-            // Up the right side of the square, or along its top to the left; then rotated by quarter turns.
+            // Up the right side of the square, or along its top to the left; then rotated by
+            // quarter turns.
             let along = 38.0 * f64::from(i);
             let ray = if octant % 2 == 0 { dvec2(228.0, along) } else { dvec2(228.0 - along, 228.0) };
             let ray = (0..octant / 2).fold(ray, |ray, _| ray.perp());

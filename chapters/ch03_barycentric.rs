@@ -138,7 +138,8 @@ fn weights(framebuffer: &mut Framebuffer, knobs: &Knobs) {
         let weights = areas.map(|area| area as f64 / coverage.twice_area as f64);
         let inside = coverage.covers(areas);
         let on_tenth = weights.iter().any(|&weight| (weight * 10.0 - (weight * 10.0).round()).abs() < 0.025);
-        // Beyond an edge the weight of the opposite vertex is negative; dim, so that the triangle stands out.
+        // Beyond an edge the weight of the opposite vertex is negative; dim, so that the triangle
+        // stands out.
         let brightness = if inside == on_tenth {
             110.0
         } else if inside {
@@ -175,8 +176,9 @@ const AREAS: &[Knob] = &[
 ];
 
 // ANCHOR: areas
-/// The weights of a point P: the small triangle opposite to A in red, to B in green, to C in blue, each the
-/// brighter the more its vertex weighs, and P in the mixture of the three. Negative weights are striped.
+/// The weights of a point P: the small triangle opposite to A in red, to B in green, to C in blue,
+/// each the brighter the more its vertex weighs, and P in the mixture of the three. Negative
+/// weights are striped.
 fn areas(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     let fit = Fit::new(framebuffer.rect(), [640.0, 480.0]);
     let [a, b, c, p] = ["a", "b", "c", "p"].map(|name| fit.at(knobs.point(name)));
@@ -191,7 +193,8 @@ fn areas(framebuffer: &mut Framebuffer, knobs: &Knobs) {
         Color::truncated(channels)
     };
 
-    // The largest first: a triangle of negative weight lies on others, and they show between its stripes.
+    // The largest first: a triangle of negative weight lies on others, and they show between its
+    // stripes.
     let mut order = [0, 1, 2];
     order.sort_by(|&i, &j| weights[j].total_cmp(&weights[i]));
     for i in order {
@@ -232,8 +235,9 @@ fn limited(framebuffer: &mut Framebuffer) {
     confetti(framebuffer, StepLimit::Everywhere);
 }
 
-/// Small triangles on a screen of 80×60 pixels, each at another fraction of a pixel. All vertices have
-/// values in 0..=1, drawn as dark to bright blue; a value outside that range is drawn in orange.
+/// Small triangles on a screen of 80×60 pixels, each at another fraction of a pixel. All vertices
+/// have values in 0..=1, drawn as dark to bright blue; a value outside that range is drawn in
+/// orange.
 fn confetti(framebuffer: &mut Framebuffer, limit: StepLimit) {
     picture::draw_enlarged(framebuffer, (80, 60), |screen| {
         for (column, row) in (0..6).flat_map(|row| (0..7).map(move |column| (column, row))) {

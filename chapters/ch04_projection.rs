@@ -28,8 +28,8 @@ pub(crate) const CHAPTER: Chapter = Chapter {
 };
 
 // ANCHOR: to_screen
-/// Divides, and moves the point at which the camera looks to the middle of a picture of 640×480, scaled
-/// to `picture`.
+/// Divides, and moves the point at which the camera looks to the middle of a picture of 640×480,
+/// scaled to `picture`.
 fn to_screen(clip: DVec4, picture: Rect) -> DVec2 {
     let fit = Fit::new(picture, [640.0, 480.0]);
     fit.at(dvec2(320.0, 240.0) + perspective_divide(clip).truncate())
@@ -97,8 +97,8 @@ const CUBE: &[Knob] = &[
 const ORTHOGRAPHIC: &[Knob] = &[ASIDE];
 
 // ANCHOR: cubes
-/// Five cubes, each farther away and more to the right than the one before it. The first is at a distance from
-/// the eye, which may have gone aside.
+/// Five cubes, each farther away and more to the right than the one before it. The first is at a
+/// distance from the eye, which may have gone aside.
 fn cubes(framebuffer: &mut Framebuffer, project: impl Fn(DVec3) -> DVec4 + Copy, distance: f64, aside: f64) {
     let colors = [
         Color::rgb(255, 90, 80),
@@ -145,7 +145,8 @@ const RAILS: &[Knob] = &[
 ];
 
 // ANCHOR: rails
-/// A railway line towards the horizon, seen from a height above the track; the eye may have gone aside.
+/// A railway line towards the horizon, seen from a height above the track; the eye may have gone
+/// aside.
 fn rails(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     let (height, aside) = (knobs.number("height"), knobs.number("aside"));
     let project = |point: DVec3| perspective(point - dvec3(aside, height, 0.0), 300.0);

@@ -69,7 +69,8 @@ const TILTED: &[Knob] = &[
 const NEAR: f64 = 80.0;
 
 // ANCHOR: vertex
-/// Projects a point with its texture coordinates. Screen coordinates are what the divide gives, and w is kept.
+/// Projects a point with its texture coordinates. Screen coordinates are what the divide gives, and
+/// w is kept.
 fn vertex([x, y, z]: [f64; 3], uv: [f64; 2]) -> ScreenVertex<Projected<f64, 2>> {
     let clip = perspective(dvec3(x, y, z), NEAR);
     ScreenVertex {
@@ -82,8 +83,8 @@ fn vertex([x, y, z]: [f64; 3], uv: [f64; 2]) -> ScreenVertex<Projected<f64, 2>> 
 type Triangle = [ScreenVertex<Projected<f64, 2>>; 3];
 
 // ANCHOR: square_geometry
-/// A square of two triangles, its left edge at a distance, its right edge turned away from us by an angle
-/// in degrees.
+/// A square of two triangles, its left edge at a distance, its right edge turned away from us by an
+/// angle in degrees.
 fn square_at(distance: f64, tilt: f64) -> [Triangle; 2] {
     let (sin, cos) = libm::sincos(tilt * PI / 180.0);
     let (x, z) = (480.0 * cos, distance + 480.0 * sin);
@@ -202,8 +203,8 @@ const FLOOR: &[Knob] = &[
 ];
 
 // ANCHOR: floor
-/// A checkered floor from below our feet to far away. In each direction it is cut into so many pieces, each of
-/// two triangles.
+/// A checkered floor from below our feet to far away. In each direction it is cut into so many
+/// pieces, each of two triangles.
 fn checkered_floor(framebuffer: &mut Framebuffer, knobs: &Knobs, interpolation: Interpolation) {
     let fit = Fit::new(framebuffer.rect(), [640.0, 480.0]);
     framebuffer.clear(Color::rgb(70, 90, 70));

@@ -1,4 +1,4 @@
-//! Chapter 9, beyond the book: interpolation by weights, corrected by ω, for rasterizers that know where in a triangle they are.
+//! Chapter 9, beyond the book: interpolation by weights, corrected by w, for rasterizers that know where in a triangle they are.
 //!
 //! Chapter 3 finds weights by areas, chapter 5 corrects a parameter along a row; here the weights themselves are
 //! corrected. Takes what the vertices of a triangle carry and weights on the screen; gives varyings, the depth, and how

@@ -70,8 +70,8 @@ pub(super) const SCENE: &[Knob] = &[Knob::number(
 )];
 
 // ANCHOR: samples_scene
-/// A blue triangle and an orange one that pierce each other, narrow stripes, and thin spokes; all of them
-/// are shifted to the right by a fraction of a pixel.
+/// A blue triangle and an orange one that pierce each other, narrow stripes, and thin spokes; all
+/// of them are shifted to the right by a fraction of a pixel.
 fn scene(framebuffer: &mut Framebuffer, pattern: &Pattern, shading: Shading, shift: f64) {
     let (blue, orange) = (Color::rgb(70, 120, 220), Color::rgb(240, 150, 50));
     let (light, dark) = (Color::rgb(230, 230, 220), Color::rgb(30, 40, 50));

@@ -90,8 +90,8 @@ pub(super) fn clamped(framebuffer: &mut Framebuffer, knobs: &Knobs) {
 }
 
 // ANCHOR: tree
-/// A fir tree. Each layer's base is horizontal but for twice the tilt. If that is two thousandths of a pixel,
-/// one step of y moves x by 30,000 to 100,000, in a larger picture by more.
+/// A fir tree. Each layer's base is horizontal but for twice the tilt. If that is two thousandths
+/// of a pixel, one step of y moves x by 30,000 to 100,000, in a larger picture by more.
 fn tree(framebuffer: &mut Framebuffer, edges: EdgeWalk, tilt: f64) {
     let fit = Fit::new(framebuffer.rect(), [320.0, 320.0]);
     for i in 0..6 {
@@ -100,7 +100,8 @@ fn tree(framebuffer: &mut Framebuffer, edges: EdgeWalk, tilt: f64) {
         let [left, right, top] =
             [(160.0 - half_width, base), (160.0 + half_width, base), (160.0, base + 70.0)]
                 .map(|vertex| fit.at(vertex.into()));
-        // The base is on a whole row, whatever the size; its lower end is now on the left, now on the right.
+        // The base is on a whole row, whatever the size; its lower end is now on the left, now on
+        // the right.
         let (base, tilt) = (left.y.round(), if i % 2 == 0 { tilt } else { -tilt });
         let triangle = [dvec2(left.x, base - tilt), dvec2(right.x, base + tilt), top];
         fill(framebuffer, triangle, edges, Color::rgb(20, 90 + 22 * i, 50));
