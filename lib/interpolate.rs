@@ -59,7 +59,7 @@ pub fn linear<R: Real, const N: usize>(a: [R; N], b: [R; N], t: R) -> [R; N] {
 pub struct ScreenVertex<V> {
     /// Screen space, in pixels, y up.
     pub position: DVec2,
-    /// What the vertex carries: its varyings, in chapter 5 with ω, in chapter 7 with a depth as well.
+    /// What the vertex carries: its varyings, in chapter 5 with w, in chapter 7 with a depth as well.
     pub varyings: V,
 }
 
@@ -68,7 +68,7 @@ pub struct ScreenVertex<V> {
 pub struct ScreenTriangle {
     /// The vertices, in pixels.
     pub positions: [DVec2; 3],
-    /// Their ω, if they have been projected.
+    /// Their w, if they have been projected.
     pub w: Option<[f64; 3]>,
     /// Their varyings.
     pub varyings: [Vec<f64>; 3],
@@ -225,7 +225,7 @@ fn reciprocal<R: Real, const N: usize>(a: Projected<R, N>, b: Projected<R, N>, t
 }
 // ANCHOR_END: reciprocal
 
-/// Emits the pixels of a projected triangle, each with its ω and its values.
+/// Emits the pixels of a projected triangle, each with its w and its values.
 ///
 /// Screen space → (x, y, w and values). What is stepped up the edges and along each row is the parameter t′;
 /// `interpolation` makes values of it, once for each end of a row and once for each pixel. Source: book, section 5.4,
@@ -248,7 +248,7 @@ pub fn step_parameter<const N: usize>(
 
 /// The same with a depth that changes linearly on the screen, beside t′ (chapter 7).
 ///
-/// Screen space → (x, y, ω and values, depth). Source: book, section 7.2.
+/// Screen space → (x, y, w and values, depth). Source: book, section 7.2.
 pub fn step_parameter_and_depth<const N: usize>(
     triangle: [ScreenVertex<(Projected<f64, N>, f64)>; 3],
     interpolation: Interpolation,
