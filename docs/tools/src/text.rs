@@ -21,7 +21,7 @@ pub fn run() -> Errors {
 }
 
 /// Words that the field does not use, and what to write instead. They have all been there once.
-const WORDS: [(&str, &str); 19] = [
+const WORDS: [(&str, &str); 34] = [
     ("evenly", "linearly, or equally"),
     ("reckon", "compute"),
     ("reckoned", "computed"),
@@ -31,6 +31,20 @@ const WORDS: [(&str, &str); 19] = [
     ("way on the screen", "parameter on the screen"),
     ("range of the corners", "range of the vertices"),
     ("middle corner", "middle vertex"),
+    ("each corner", "each vertex"),
+    ("corners of a triangle", "vertices of a triangle"),
+    ("corners of the triangle", "vertices of the triangle"),
+    ("level edge", "horizontal edge"),
+    ("level edges", "horizontal edges"),
+    ("level line", "horizontal line"),
+    ("level lines", "horizontal lines"),
+    ("near distance", "distance of the image plane"),
+    ("projection plane", "image plane"),
+    ("is limited", "is clamped"),
+    ("are limited", "are clamped"),
+    ("stored numbers", "encoded values"),
+    ("before the eye", "in front of the eye"),
+    ("before the near plane", "in front of the near plane"),
     ("flat line", "x-major line"),
     ("steep line", "y-major line"),
     ("stairs", "jaggies"),
@@ -38,6 +52,7 @@ const WORDS: [(&str, &str); 19] = [
     ("aslant", "slanted"),
     ("goes ahead", "is stepped"),
     ("is asked", "is tested, or sampled"),
+    ("are asked", "are tested, or sampled"),
     ("turned round", "reversed"),
     ("hence the name", "say where the name comes from, or nothing"),
     ("whoever", "name who"),
