@@ -1,10 +1,10 @@
 //! # Chapter 5: perspective-correct interpolation
 //!
 //! **Why does a texture bend when a surface is tilted?** Because equal steps on the screen are not equal steps in
-//! space. The scanline walk stays as it is; what goes up its sides is now t′, a part of the way on the screen, and one
-//! option says what a value at t′ is.
+//! space. The scanline walk stays as it is; what is stepped along its edges is now t′, the parameter
+//! on the screen, and one option says what a value at t′ is.
 //!
-//! New here: ω and the formula for V_p (`lib/interpolate.rs`). Book: chapter 5.
+//! New here: w (the book's ω) and the formula for V_p (`lib/interpolate.rs`). Book: chapter 5.
 
 use std::f64::consts::PI;
 use std::process::ExitCode;
@@ -24,7 +24,7 @@ pub(crate) const CHAPTER: Chapter = Chapter {
     name: "ch05_perspective_correct",
     question: "Why does a texture bend when a surface is tilted?",
     variants: &[
-        Variant::with_knobs("floor", floor, FLOOR, "a checkered floor to the horizon: every line is straight, and the squares shrink towards the horizon"),
+        Variant::with_knobs("floor", floor, FLOOR, "a checkered floor to the horizon: every line is straight, and the squares get smaller towards the horizon"),
         Variant::with_knobs("correct", correct, TILTED, "the tilted square, interpolated in space: the line between the colors is straight")
             .source("section 5.4, Figure 5-8"),
         Variant::with_knobs("affine", affine, TILTED, "the same square, interpolated on the screen: the line between the colors breaks at the diagonal")
@@ -32,9 +32,9 @@ pub(crate) const CHAPTER: Chapter = Chapter {
             .remedied_by("correct"),
         Variant::new("facing", facing, "a projected triangle that faces us: chapter 3 is still enough").source("section 5.1, Figure 5-1"),
         Variant::new("square", square, "two triangles make a square that faces us: no seam, no bend").source("section 5.2, Figure 5-2"),
-        Variant::with_knobs("reciprocal", reciprocal, TILTED, "the tilted square again, by way of 1/ω and V/ω: compare it with 'correct', not one pixel differs")
+        Variant::with_knobs("reciprocal", reciprocal, TILTED, "the tilted square again, by way of 1/w and V/w: compare it with 'correct', not one pixel differs")
             .source("section 5.5.4"),
-        Variant::with_knobs("barycentric", barycentric, TILTED, "the tilted square by weights: those of areas on the screen, each divided by its corner's ω")
+        Variant::with_knobs("barycentric", barycentric, TILTED, "the tilted square by weights: those of areas on the screen, each divided by its vertex's w")
             .source("first note"),
         Variant::with_knobs("floor-affine", floor_affine, FLOOR, "the same two triangles, interpolated on the screen: the floor folds along the diagonal")
             .remedied_by("floor"),
@@ -54,22 +54,23 @@ const TILTED: &[Knob] = &[
         100.0,
         [60.0, 400.0],
         "",
-        "without the correction, less is wrong from farther away: the sides differ less in their distance",
+        "without the correction, less is wrong from farther away: the edges differ less in their distance",
     ),
     Knob::whole(
         "texels",
         2,
         [2, 16],
         "",
-        "without the correction the level lines break, and the upright ones do not crowd together",
+        "without the correction the horizontal lines break, and the vertical ones do not crowd together",
     ),
 ];
 
-/// The distance of the projection plane in the book's scenes of this chapter.
+/// The distance of the image plane in the book's scenes of this chapter.
 const NEAR: f64 = 80.0;
 
 // ANCHOR: vertex
-/// Projects a point with its texture coordinates. Screen coordinates are what the divide gives, and ω is kept.
+/// Projects a point with its texture coordinates. Screen coordinates are what the divide gives, and
+/// w is kept.
 fn vertex([x, y, z]: [f64; 3], uv: [f64; 2]) -> ScreenVertex<Projected<f64, 2>> {
     let clip = perspective(dvec3(x, y, z), NEAR);
     ScreenVertex {
@@ -82,8 +83,8 @@ fn vertex([x, y, z]: [f64; 3], uv: [f64; 2]) -> ScreenVertex<Projected<f64, 2>> 
 type Triangle = [ScreenVertex<Projected<f64, 2>>; 3];
 
 // ANCHOR: square_geometry
-/// A square of two triangles, its left side at a distance, its right side turned away from us by an angle in
-/// degrees.
+/// A square of two triangles, its left edge at a distance, its right edge turned away from us by an
+/// angle in degrees.
 fn square_at(distance: f64, tilt: f64) -> [Triangle; 2] {
     let (sin, cos) = libm::sincos(tilt * PI / 180.0);
     let (x, z) = (480.0 * cos, distance + 480.0 * sin);
@@ -140,7 +141,7 @@ fn reciprocal(framebuffer: &mut Framebuffer, knobs: &Knobs) {
 // ANCHOR_END: textured
 
 // ANCHOR: barycentric
-/// The tilted square by weights, pixel by pixel; the weights of areas are corrected by ω.
+/// The tilted square by weights, pixel by pixel; the weights of areas are corrected by w.
 fn barycentric(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     let fit = Fit::new(framebuffer.rect(), [640.0, 480.0]);
     let (triangles, texture) = tilted_square(knobs);
@@ -158,7 +159,7 @@ fn barycentric(framebuffer: &mut Framebuffer, knobs: &Knobs) {
 // ANCHOR_END: barycentric
 
 // ANCHOR: facing
-/// Draws triangles as chapter 3 does: values by equal steps on the screen, ω unused.
+/// Draws triangles as chapter 3 does: values by equal steps on the screen, w unused.
 fn textured_as_before(framebuffer: &mut Framebuffer, triangles: &[Triangle]) {
     let fit = Fit::new(framebuffer.rect(), [640.0, 480.0]);
     let texture = Texture::book();
@@ -202,8 +203,8 @@ const FLOOR: &[Knob] = &[
 ];
 
 // ANCHOR: floor
-/// A checkered floor from below our feet to far away. In each direction it is cut into so many pieces, each of
-/// two triangles.
+/// A checkered floor from below our feet to far away. In each direction it is cut into so many
+/// pieces, each of two triangles.
 fn checkered_floor(framebuffer: &mut Framebuffer, knobs: &Knobs, interpolation: Interpolation) {
     let fit = Fit::new(framebuffer.rect(), [640.0, 480.0]);
     framebuffer.clear(Color::rgb(70, 90, 70));

@@ -104,7 +104,8 @@ impl Framebuffer {
         }
     }
 
-    /// Where the pixel (x, y) stands in memory; `None` outside the framebuffer. As [`Rect::index`], from (0, 0) on.
+    /// Where the pixel (x, y) stands in memory; `None` outside the framebuffer. As [`Rect::index`],
+    /// from (0, 0) on.
     #[inline]
     fn index(&self, x: i32, y: i32) -> Option<usize> {
         // A negative number becomes a very large one.
@@ -149,13 +150,15 @@ impl Framebuffer {
         self.pixels.chunks(self.width as usize).rev()
     }
 
-    /// The channels of all pixels as an image file holds them: red, green, blue, and the highest row first.
+    /// The channels of all pixels as an image file holds them: red, green, blue, and the highest
+    /// row first.
     #[must_use]
     pub fn rgb_from_top(&self) -> Vec<u8> {
         self.rows_from_top().flatten().flat_map(|color| color.channels()).collect()
     }
 
-    /// Writes the picture as a PPM file (binary, `P6`): a line of text, then three bytes for each pixel.
+    /// Writes the picture as a PPM file (binary, `P6`): a line of text, then three bytes for each
+    /// pixel.
     ///
     /// # Errors
     /// If the writer fails.
