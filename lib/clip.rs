@@ -117,6 +117,15 @@ pub enum ClipTest {
 }
 
 impl ClipTest {
+    /// Whether what lies between two points outside a plane lies outside too: the divide can turn that round.
+    #[inline]
+    pub(crate) const fn keeps_sides(self) -> bool {
+        match self {
+            Self::BeforeDivide => true,
+            Self::AfterDivide => false,
+        }
+    }
+
     #[inline]
     pub(crate) fn signed_distance(self, plane: &Plane, position: DVec4) -> f64 {
         match self {
@@ -245,14 +254,18 @@ pub fn clip_triangle<const N: usize>(
     planes: &[Plane],
     test: ClipTest,
 ) -> Polygon<N> {
-    if !triangle.iter().all(|vertex| vertex.position.is_finite()) {
+    let is_finite = |polygon: &[ClipVertex<N>]| polygon.iter().all(|vertex| vertex.position.is_finite());
+    let is_inside =
+        |plane: &Plane, vertex: &ClipVertex<N>| test.signed_distance(plane, vertex.position) >= 0.0;
+    let is_beyond = |plane: &Plane| triangle.iter().all(|vertex| !is_inside(plane, vertex));
+    // What lies outside one plane is gone before another one cuts it, and rounding moves the cut.
+    if !is_finite(&triangle) || (test.keeps_sides() && planes.iter().any(is_beyond)) {
         return Polygon::new();
     }
-    // Most triangles lie inside all planes, or wholly outside one.
     let mut polygon = Polygon::from_iter(triangle);
     for plane in planes {
-        let is_inside = |vertex: &ClipVertex<N>| test.signed_distance(plane, vertex.position) >= 0.0;
-        if !polygon.iter().all(is_inside) {
+        // Most triangles lie inside all planes.
+        if !polygon.iter().all(|vertex| is_inside(plane, vertex)) {
             polygon = clip_polygon(&polygon, plane, test);
         }
     }
@@ -420,6 +433,15 @@ mod tests {
         for odd in [f64::NAN, f64::INFINITY] {
             assert!(clip([vertex(odd, 1.0), vertex(0.0, 1.0), vertex(0.5, odd)]).is_empty());
         }
+    }
+
+    #[test]
+    fn what_lies_beyond_a_plane_is_gone_before_others_cut_it() {
+        let vertex = |x, y, z, w| ClipVertex { position: dvec4(x, y, z, w), varyings: [] };
+        // Cut at the right plane first, the middle of −1e300 and −1e38 would come out as 0: inside.
+        let near =
+            [vertex(1e38, 0.0, -1e300, 0.0), vertex(0.0, 0.0, -1e38, 1.0), vertex(1.0, 1.0, -1.2, 1.0)];
+        assert!(clip_triangle(near, &Plane::CANONICAL, ClipTest::BeforeDivide).is_empty());
     }
 
     proptest! {
