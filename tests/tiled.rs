@@ -605,6 +605,22 @@ fn layers_with_holes_on_what_was_there() {
 }
 
 #[test]
+fn depths_that_overflow_hide_nothing() {
+    // From −3·10³⁸ to 10³⁸: the difference is infinite in single precision, and so is every depth but the first.
+    let corners = |z: [f64; 3]| {
+        let corners = [(-1.0, -1.0), (2.0, -1.0), (-1.0, 2.0)];
+        let records: [Record; 3] = from_fn(|i| {
+            (dvec4(corners[i].0, corners[i].1, z[i], 1.0), [100.0 + 50.0 * z[0].abs().min(1.0); 5])
+        });
+        records
+    };
+    let records = [corners([-3e38, 1e38, 1e38]), corners([0.0; 3])].concat();
+    let state = RenderState { clip_volume: ClipVolume::Everything, ..RenderState::default() };
+    let mesh = Mesh::unindexed(records).expect("two triangles");
+    compare(&mesh, &Counted::default(), &state, (300, 80));
+}
+
+#[test]
 fn a_small_triangle_with_a_hole_in_a_tile_of_one_pixel_hides_nothing() {
     let (width, height) = (129, 33);
     let mut records: Vec<Record> = Vec::new();
