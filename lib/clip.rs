@@ -246,14 +246,18 @@ pub(crate) fn for_each_clip<const N: usize>(
 }
 // ANCHOR_END: clip_polygon
 
-/// The part of a triangle inside all planes, taken one after the other; empty if nothing is left, or if a coordinate is
-/// not finite.
+/// The part of a triangle inside all planes, taken one after the other; empty if nothing is left, if a coordinate is not
+/// finite, or if coordinates are so large that that of a cut is not (from some 10³⁰⁷ on).
+///
+/// # Panics
+/// If there are more than six planes: what is left might have more than [`MAX_VERTICES`].
 #[must_use]
 pub fn clip_triangle<const N: usize>(
     triangle: [ClipVertex<N>; 3],
     planes: &[Plane],
     test: ClipTest,
 ) -> Polygon<N> {
+    assert!(planes.len() <= MAX_VERTICES - 3, "{} planes cut a triangle", planes.len());
     let is_finite = |polygon: &[ClipVertex<N>]| polygon.iter().all(|vertex| vertex.position.is_finite());
     let is_inside =
         |plane: &Plane, vertex: &ClipVertex<N>| test.signed_distance(plane, vertex.position) >= 0.0;
@@ -269,7 +273,7 @@ pub fn clip_triangle<const N: usize>(
             polygon = clip_polygon(&polygon, plane, test);
         }
     }
-    polygon
+    if is_finite(&polygon) { polygon } else { Polygon::new() }
 }
 
 /// The triangles of a convex polygon, as a fan from its first vertex. Book, section 7.4, Figure 7-9.
@@ -442,6 +446,26 @@ mod tests {
         let near =
             [vertex(1e38, 0.0, -1e300, 0.0), vertex(0.0, 0.0, -1e38, 1.0), vertex(1.0, 1.0, -1.2, 1.0)];
         assert!(clip_triangle(near, &Plane::CANONICAL, ClipTest::BeforeDivide).is_empty());
+    }
+
+    #[test]
+    fn cuts_that_are_no_numbers_leave_nothing() {
+        let vertex = |x, y| ClipVertex { position: dvec4(x, y, 0.0, 1.0), varyings: [] };
+        for far in [1.5e308, -1.5e308] {
+            let triangle = [vertex(far, 0.0), vertex(-far, 0.5), vertex(0.0, 0.5)];
+            assert!(clip_triangle(triangle, &Plane::CANONICAL, ClipTest::BeforeDivide).is_empty());
+        }
+        let triangle = [vertex(1e307, 0.0), vertex(-1e307, 0.5), vertex(0.0, 0.5)];
+        let clipped = clip_triangle(triangle, &Plane::CANONICAL, ClipTest::BeforeDivide);
+        assert!(clipped.len() > 2 && clipped.iter().all(|vertex| vertex.position.is_finite()));
+    }
+
+    #[test]
+    #[should_panic(expected = "7 planes")]
+    fn more_than_six_planes_are_refused() {
+        let vertex = |x, y| ClipVertex { position: dvec4(x, y, 0.0, 1.0), varyings: [] };
+        let triangle = [vertex(0.0, 0.0), vertex(1.0, 0.0), vertex(0.0, 1.0)];
+        let _ = clip_triangle(triangle, &[Plane::LEFT; 7], ClipTest::BeforeDivide);
     }
 
     proptest! {
