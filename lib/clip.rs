@@ -287,7 +287,14 @@ pub fn fan<V: Copy, const CAP: usize>(polygon: ArrayVec<V, CAP>) -> impl Iterato
     (2..polygon.len()).map(move |i| [polygon[0], polygon[i - 1], polygon[i]])
 }
 
+/// A point beside the eye (ω = 0) counts as being so far in front of it. A power of two: dividing by it and multiplying
+/// again changes nothing.
+const HAIR: f64 = 1.0 / 18_446_744_073_709_551_616.0;
+
 /// A vertex after the perspective divide.
+///
+/// A point beside the eye (ω = 0) has no place on the screen. So that the direction to it is not lost, it is taken to be a
+/// hair in front of the eye, 2⁻⁶⁴; what has to be cut away is then cut away by what comes next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NdcVertex<const N: usize> {
     /// Normalized device coordinates, −1..1 inside the view volume.
@@ -301,8 +308,10 @@ pub struct NdcVertex<const N: usize> {
 impl<const N: usize> From<ClipVertex<N>> for NdcVertex<N> {
     #[inline]
     fn from(vertex: ClipVertex<N>) -> Self {
-        let position = perspective_divide(vertex.position);
-        Self { position, w: vertex.position.w, varyings: vertex.varyings }
+        let DVec4 { w, .. } = vertex.position;
+        let w = if w == 0.0 { HAIR } else { w };
+        let position = perspective_divide(vertex.position.truncate().extend(w));
+        Self { position, w, varyings: vertex.varyings }
     }
 }
 
@@ -466,6 +475,14 @@ mod tests {
         let vertex = |x, y| ClipVertex { position: dvec4(x, y, 0.0, 1.0), varyings: [] };
         let triangle = [vertex(0.0, 0.0), vertex(1.0, 0.0), vertex(0.0, 1.0)];
         let _ = clip_triangle(triangle, &[Plane::LEFT; 7], ClipTest::BeforeDivide);
+    }
+
+    #[test]
+    fn a_point_beside_the_eye_is_a_hair_in_front_of_it() {
+        let [x, y, z, w] = [1e3, -0.3, 5.0, 0.0];
+        let vertex = NdcVertex::from(ClipVertex { position: dvec4(x, y, z, w), varyings: [] });
+        assert!(vertex.w > 0.0 && vertex.position.is_finite());
+        assert_eq!(vertex.position * vertex.w, dvec4(x, y, z, w).truncate());
     }
 
     proptest! {

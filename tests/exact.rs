@@ -347,6 +347,29 @@ fn picture<Z: Rasterizer>(mesh: &Mesh<(DVec4, [f64; 3])>, rasterizer: &Z) -> Tar
 }
 
 #[test]
+fn what_is_beside_the_eye_is_cut_and_not_lost() {
+    // From far on the right, beside the eye, into the picture.
+    let corners = |w| [dvec4(-0.5, -0.8, 0.5, 1.0), dvec4(1.0, 0.0, 0.5, w), dvec4(-0.5, 0.8, 0.5, 1.0)];
+    let count = |w, volume| {
+        let mesh = Mesh::unindexed(corners(w).map(|corner| (corner, [0.0; 3])).to_vec()).expect("a triangle");
+        let state = RenderState {
+            clip_volume: volume,
+            merge: Merge { depth_test: DepthTest::Always, ..Merge::default() },
+            ..RenderState::default()
+        };
+        let mut target = Target::new(64, 48);
+        let counter = Counter::new(&target);
+        draw(&mesh, &Flat, &state, &Exact::<f64>::new(), &mut target, &counter);
+        counter.0.into_inner()
+    };
+    for volume in [ClipVolume::Everything, ClipVolume::InFront(0.0)] {
+        let beside = count(0.0, volume);
+        assert!(beside.iter().sum::<u32>() > 1000);
+        assert_eq!(beside, count(1e-12, volume));
+    }
+}
+
+#[test]
 fn an_orthographic_projection_needs_no_correction() {
     // With the same ω everywhere, affine and perspective-correct interpolation draw the same picture.
     let vertices = [(-0.9, -0.8, 10.0), (0.95, -0.3, 250.0), (-0.1, 0.9, 90.0)]
