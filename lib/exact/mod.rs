@@ -15,10 +15,11 @@
 //! **Which values.** Weights are E · (1 / sum of the three E), E the exact values of the edge functions at the center,
 //! converted, divided and multiplied with one rounding each. In the first covered pixel of a row 1/ω, V/ω and the depth
 //! are interpolated by these weights; in the nth after it they are that plus n times their change from pixel to pixel,
-//! which comes from the change of E in the same way. V = (V/ω) · 1/(1/ω). The depth is linear on the screen. All
-//! arithmetic is that of the number type: four operations, one rounding each.
+//! which comes from the change of E in the same way. V/ω is V · (1/ω), and V = (V/ω) · 1/(1/ω). The depth is linear on the
+//! screen. All arithmetic is that of the number type: four operations, one rounding each.
 //!
-//! **Which rounding.** Channels are rounded to the nearest of 0..=255, halves upwards; NaN gives 0.
+//! **Which rounding.** To a channel ½ is added, and the fraction of the sum cut off: the nearest of 0..=255, halves upwards.
+//! NaN gives 0.
 //!
 //! Triangles that share an edge, with the same two vertices, leave no hole along it and draw nothing twice. Where a
 //! vertex of one lies in the middle of an edge of another (a T-junction), rounding may move it off that edge.
