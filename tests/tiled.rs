@@ -12,7 +12,7 @@ use proptest::test_runner::contextualize_config;
 use rasterbook::area::Winding;
 use rasterbook::clip::{ClipTest, ClipVolume, DepthRange};
 use rasterbook::cull::CullMode;
-use rasterbook::depth::{DepthEncoding, DepthTest};
+use rasterbook::depth::{DepthBuffer, DepthEncoding, DepthTest};
 use rasterbook::exact::Exact;
 use rasterbook::interpolate::Interpolation;
 use rasterbook::merge::{Blend, Merge};
@@ -602,6 +602,24 @@ fn layers_with_holes_on_what_was_there() {
         };
         assert_same(&both(Some(&Tiled::new())), &both(None));
     }
+}
+
+#[test]
+#[should_panic(expected = "(8, 8) colors and (8, 4) depths")]
+fn planes_of_two_sizes_are_refused() {
+    let mut target = Target::<f32>::sized(8, 8);
+    target.depth = DepthBuffer::new(8, 4);
+    let mesh = bare([[-1.0, -1.0, 0.0, 1.0], [1.0, -1.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0]]);
+    draw_onto(&mut target, &mesh, &Counted::default(), &RenderState::default(), Some(&Tiled::new()));
+}
+
+#[test]
+#[should_panic(expected = "(8, 8) colors and (8, 4) depths")]
+fn planes_of_two_sizes_are_refused_by_the_exact_one_too() {
+    let mut target = Target::<f32>::sized(8, 8);
+    target.depth = DepthBuffer::new(8, 4);
+    let mesh = bare([[-1.0, -1.0, 0.0, 1.0], [1.0, -1.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0]]);
+    draw_onto(&mut target, &mesh, &Counted::default(), &RenderState::default(), None);
 }
 
 #[test]
