@@ -338,6 +338,37 @@ proptest! {
     }
 }
 
+/// The largest difference of a channel between both precisions, where most digits cancel: in pixels whose centers lie on the
+/// far edge of a triangle, which is so many times as far away as its near vertex.
+fn difference_on_far_edges(ratio: f64) -> u8 {
+    let mut state = 1_u64;
+    let mut next = move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as f64 / (1_u64 << 31) as f64
+    };
+    let mut most = 0;
+    for round in 0..1000 {
+        // Its left edge: what lies on it is covered.
+        let x = ((next() * 20.0).floor() + 0.5) / 20.0 - 1.0;
+        let corners =
+            [(x + next(), next() * 2.0 - 1.0, 1.0), (x, 0.9, ratio), (x, -0.9, ratio * (0.5 + 0.5 * next()))];
+        let mut vertices = corners
+            .map(|(x, y, w)| (dvec4(x * w, y * w, 0.5 * w, w), [next(), next(), next()].map(|v| v * 255.0)));
+        vertices.rotate_left(round % 3);
+        let mesh = Mesh::unindexed(vertices.to_vec()).expect("a triangle");
+        let colors = [picture(&mesh, &Exact::<f64>::new()).color, picture(&mesh, &Exact::<f32>::new()).color];
+        let [double, single] = colors.map(|color| color.rgb_from_top());
+        most = double.iter().zip(single).map(|(a, b)| a.abs_diff(b)).fold(most, u8::max);
+    }
+    most
+}
+
+#[test]
+fn colors_of_both_precisions_differ_by_one_up_to_ten_thousand_times_the_distance() {
+    assert!(difference_on_far_edges(1e4) <= 1);
+    assert!(difference_on_far_edges(1e6) > 1, "far beyond that single precision shows");
+}
+
 fn picture<Z: Rasterizer>(mesh: &Mesh<(DVec4, [f64; 3])>, rasterizer: &Z) -> Target<Z::Depth> {
     let state = RenderState::default();
     let mut target = Target::sized(40, 30);
