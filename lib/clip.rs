@@ -117,6 +117,15 @@ pub enum ClipTest {
 }
 
 impl ClipTest {
+    /// Whether what lies between two points outside a plane lies outside too: the divide can turn that round.
+    #[inline]
+    pub(crate) const fn keeps_sides(self) -> bool {
+        match self {
+            Self::BeforeDivide => true,
+            Self::AfterDivide => false,
+        }
+    }
+
     #[inline]
     pub(crate) fn signed_distance(self, plane: &Plane, position: DVec4) -> f64 {
         match self {
@@ -237,26 +246,34 @@ pub(crate) fn for_each_clip<const N: usize>(
 }
 // ANCHOR_END: clip_polygon
 
-/// The part of a triangle inside all planes, taken one after the other; empty if nothing is left, or if a coordinate is
-/// not finite.
+/// The part of a triangle inside all planes, taken one after the other; empty if nothing is left, if a coordinate is not
+/// finite, or if coordinates are so large that that of a cut is not (from some 10³⁰⁷ on).
+///
+/// # Panics
+/// If there are more than six planes: what is left might have more than [`MAX_VERTICES`].
 #[must_use]
 pub fn clip_triangle<const N: usize>(
     triangle: [ClipVertex<N>; 3],
     planes: &[Plane],
     test: ClipTest,
 ) -> Polygon<N> {
-    if !triangle.iter().all(|vertex| vertex.position.is_finite()) {
+    assert!(planes.len() <= MAX_VERTICES - 3, "{} planes cut a triangle", planes.len());
+    let is_finite = |polygon: &[ClipVertex<N>]| polygon.iter().all(|vertex| vertex.position.is_finite());
+    let is_inside =
+        |plane: &Plane, vertex: &ClipVertex<N>| test.signed_distance(plane, vertex.position) >= 0.0;
+    let is_beyond = |plane: &Plane| triangle.iter().all(|vertex| !is_inside(plane, vertex));
+    // What lies outside one plane is gone before another one cuts it, and rounding moves the cut.
+    if !is_finite(&triangle) || (test.keeps_sides() && planes.iter().any(is_beyond)) {
         return Polygon::new();
     }
-    // Most triangles lie inside all planes, or wholly outside one.
     let mut polygon = Polygon::from_iter(triangle);
     for plane in planes {
-        let is_inside = |vertex: &ClipVertex<N>| test.signed_distance(plane, vertex.position) >= 0.0;
-        if !polygon.iter().all(is_inside) {
+        // Most triangles lie inside all planes.
+        if !polygon.iter().all(|vertex| is_inside(plane, vertex)) {
             polygon = clip_polygon(&polygon, plane, test);
         }
     }
-    polygon
+    if is_finite(&polygon) { polygon } else { Polygon::new() }
 }
 
 /// The triangles of a convex polygon, as a fan from its first vertex. Book, section 7.4, Figure 7-9.
@@ -270,7 +287,14 @@ pub fn fan<V: Copy, const CAP: usize>(polygon: ArrayVec<V, CAP>) -> impl Iterato
     (2..polygon.len()).map(move |i| [polygon[0], polygon[i - 1], polygon[i]])
 }
 
+/// A point beside the eye (ω = 0) counts as being so far in front of it. A power of two: dividing by it and multiplying
+/// again changes nothing.
+const HAIR: f64 = 1.0 / 18_446_744_073_709_551_616.0;
+
 /// A vertex after the perspective divide.
+///
+/// A point beside the eye (ω = 0) has no place on the screen. So that the direction to it is not lost, it is taken to be a
+/// hair in front of the eye, 2⁻⁶⁴; what has to be cut away is then cut away by what comes next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NdcVertex<const N: usize> {
     /// Normalized device coordinates, −1..1 inside the view volume.
@@ -284,8 +308,10 @@ pub struct NdcVertex<const N: usize> {
 impl<const N: usize> From<ClipVertex<N>> for NdcVertex<N> {
     #[inline]
     fn from(vertex: ClipVertex<N>) -> Self {
-        let position = perspective_divide(vertex.position);
-        Self { position, w: vertex.position.w, varyings: vertex.varyings }
+        let DVec4 { w, .. } = vertex.position;
+        let w = if w == 0.0 { HAIR } else { w };
+        let position = perspective_divide(vertex.position.truncate().extend(w));
+        Self { position, w, varyings: vertex.varyings }
     }
 }
 
@@ -420,6 +446,43 @@ mod tests {
         for odd in [f64::NAN, f64::INFINITY] {
             assert!(clip([vertex(odd, 1.0), vertex(0.0, 1.0), vertex(0.5, odd)]).is_empty());
         }
+    }
+
+    #[test]
+    fn what_lies_beyond_a_plane_is_gone_before_others_cut_it() {
+        let vertex = |x, y, z, w| ClipVertex { position: dvec4(x, y, z, w), varyings: [] };
+        // Cut at the right plane first, the middle of −1e300 and −1e38 would come out as 0: inside.
+        let near =
+            [vertex(1e38, 0.0, -1e300, 0.0), vertex(0.0, 0.0, -1e38, 1.0), vertex(1.0, 1.0, -1.2, 1.0)];
+        assert!(clip_triangle(near, &Plane::CANONICAL, ClipTest::BeforeDivide).is_empty());
+    }
+
+    #[test]
+    fn cuts_that_are_no_numbers_leave_nothing() {
+        let vertex = |x, y| ClipVertex { position: dvec4(x, y, 0.0, 1.0), varyings: [] };
+        for far in [1.5e308, -1.5e308] {
+            let triangle = [vertex(far, 0.0), vertex(-far, 0.5), vertex(0.0, 0.5)];
+            assert!(clip_triangle(triangle, &Plane::CANONICAL, ClipTest::BeforeDivide).is_empty());
+        }
+        let triangle = [vertex(1e307, 0.0), vertex(-1e307, 0.5), vertex(0.0, 0.5)];
+        let clipped = clip_triangle(triangle, &Plane::CANONICAL, ClipTest::BeforeDivide);
+        assert!(clipped.len() > 2 && clipped.iter().all(|vertex| vertex.position.is_finite()));
+    }
+
+    #[test]
+    #[should_panic(expected = "7 planes")]
+    fn more_than_six_planes_are_refused() {
+        let vertex = |x, y| ClipVertex { position: dvec4(x, y, 0.0, 1.0), varyings: [] };
+        let triangle = [vertex(0.0, 0.0), vertex(1.0, 0.0), vertex(0.0, 1.0)];
+        let _ = clip_triangle(triangle, &[Plane::LEFT; 7], ClipTest::BeforeDivide);
+    }
+
+    #[test]
+    fn a_point_beside_the_eye_is_a_hair_in_front_of_it() {
+        let [x, y, z, w] = [1e3, -0.3, 5.0, 0.0];
+        let vertex = NdcVertex::from(ClipVertex { position: dvec4(x, y, z, w), varyings: [] });
+        assert!(vertex.w > 0.0 && vertex.position.is_finite());
+        assert_eq!(vertex.position * vertex.w, dvec4(x, y, z, w).truncate());
     }
 
     proptest! {

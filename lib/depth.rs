@@ -133,6 +133,13 @@ impl<D: Scalar> DepthBuffer<D> {
         Self { rect: Rect::sized(width, height), values: values.into(), observer: None }
     }
 
+    /// All pixels.
+    #[must_use]
+    #[inline]
+    pub const fn rect(&self) -> Rect {
+        self.rect
+    }
+
     /// Gives all pixels the same depth.
     pub fn clear(&mut self, depth: D) {
         self.values.fill(depth);

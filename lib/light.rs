@@ -103,10 +103,12 @@ pub fn blinn_phong<R: Real>(normal: Vector<R>, to_light: Vector<R>, to_eye: Vect
 ///
 /// ```text
 ///        n (blue)          x runs along t, where u grows, y along b, where v grows, and
-///        │   ╱ b (green)   z along n, off the surface. (128, 128, 255) leaves the normal
-///        │ ╱               as it is, which is why such maps are bluish.
+///        │   ╱ b (green)   z along n, off the surface. (128, 128, 255) all but leaves the
+///        │ ╱               normal as it is, which is why such maps are bluish.
 ///        └───── t (red)
 /// ```
+///
+/// No texel leaves it exactly: 0 would be 127.5, and 128 tilts the normal by 0.3°.
 ///
 /// The axes are of length 1 and in any space; the normal is in the same. Source: first note (a normal map on a quad).
 #[must_use]
@@ -226,6 +228,14 @@ mod tests {
         let lamp = Light::Point { position: [0.0, 3.0, 4.0], intensity: 50.0 };
         assert_eq!(lamp.at([0.0; 3]), ([0.0, 0.6, 0.8], 2.0), "50 at the distance 1 is 2 at the distance 5");
         assert_eq!(Light::Directional([0.0, 1.0, 0.0]).at([9.0; 3]), ([0.0, 1.0, 0.0], 1.0));
+    }
+
+    #[test]
+    fn a_bluish_texel_all_but_leaves_the_normal() {
+        let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        assert_eq!(mapped_normal([127.5, 127.5, 255.0], axes), [0.0, 0.0, 1.0]);
+        let tilt = libm::acos(mapped_normal([128.0, 128.0, 255.0], axes)[2]).to_degrees();
+        assert!((tilt - 0.318).abs() < 1e-3, "{tilt}");
     }
 
     #[test]

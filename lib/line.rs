@@ -49,8 +49,9 @@ pub struct Line {
 /// Emits the pixels of the line from `a` to `b` (screen space, pixels) that lie in the scissor.
 ///
 /// The running coordinate goes up by one from the lower end, the other one by the slope; the pixel is where both are
-/// cut to whole numbers. The right end, of a y-major line the upper end, is not drawn: a chain of lines that goes on to the
-/// right draws no joint twice. Where a chain turns back, its joint may be drawn by neither line.
+/// rounded down to whole numbers (the book cuts them, which is the same but for negative ones). The right end, of a y-major
+/// line the upper end, is not drawn: a chain draws no joint twice while it goes on to the right by x-major lines, or upwards
+/// by y-major ones. Elsewhere both lines may draw the joint, or neither: (0, 9) to (3, 0) to (9, 0) has (3, 0) twice.
 ///
 /// ```text
 ///     y                    k = Δy/Δx = 1/3
@@ -91,22 +92,24 @@ impl Line {
     }
 
     // ANCHOR: dda
-    /// Emits the pixels of the line, from left to right or, if it is y-major, from bottom to top;
-    /// `visible` are the columns or the rows that can be seen. With each pixel the running
-    /// coordinate and the other one, before they are cut to whole numbers.
+    /// Emits the pixels of the line, from left to right or, if it is y-major, from bottom to top; `visible` are the columns
+    /// or the rows that can be seen. With each pixel the running coordinate and the other one, before they are rounded
+    /// down.
     pub(crate) fn step(&self, visible: Range<i32>, mut emit: impl FnMut(Pixel, [f64; 2])) {
         let Self { a, b, .. } = *self;
         if self.is_x_major() {
             // Step x from the left end.
             let (start, end) = if a.x < b.x { (a, b) } else { (b, a) };
             step_by_one([start.x, start.y], end.x, self.slope(), visible, |x, y| {
-                emit((x as i32, y as i32), [x, y]);
+                emit((x.floor() as i32, y.floor() as i32), [x, y]);
             });
         } else {
             // Step y from the lower end.
             let (start, end) = if a.y < b.y { (a, b) } else { (b, a) };
             let slope = 1.0 / self.slope();
-            step_by_one([start.y, start.x], end.y, slope, visible, |y, x| emit((x as i32, y as i32), [y, x]));
+            step_by_one([start.y, start.x], end.y, slope, visible, |y, x| {
+                emit((x.floor() as i32, y.floor() as i32), [y, x]);
+            });
         }
     }
 }
@@ -121,12 +124,12 @@ fn step_by_one(
     mut emit: impl FnMut(f64, f64),
 ) {
     // What lies before the first visible pixel is skipped in one step.
-    let skipped = f64::from(visible.start) - along.trunc();
+    let skipped = f64::from(visible.start) - along.floor();
     if skipped > 0.0 {
-        along = f64::from(visible.start) + along.fract();
+        along = f64::from(visible.start) + (along - along.floor());
         across += slope * skipped;
     }
-    while along < end.trunc() && along < f64::from(visible.end) {
+    while along < end.floor() && along < f64::from(visible.end) {
         emit(along, across);
         along += 1.0;
         across += slope;
@@ -204,7 +207,48 @@ mod tests {
         assert!(pixels(dvec2(-f64::MAX, -1.0), dvec2(f64::MAX, 1.0)).len() <= 200);
     }
 
+    #[test]
+    fn what_lies_left_of_or_below_zero_is_outside() {
+        assert!(pixels(dvec2(1.0, -0.5), dvec2(6.0, -0.9)).is_empty(), "below row 0");
+        assert!(pixels(dvec2(-0.9, 1.0), dvec2(-0.5, 6.0)).is_empty(), "left of column 0");
+        assert_eq!(pixels(dvec2(-1.5, 2.0), dvec2(2.5, 2.0)), [(0, 2), (1, 2)], "no column twice");
+    }
+
+    #[test]
+    fn joints() {
+        let count = |chain: &[DVec2], joint: Pixel| {
+            let lines = chain.windows(2).flat_map(|ends| pixels(ends[0], ends[1]));
+            lines.filter(|&pixel| pixel == joint).count()
+        };
+        let [flat, steep] = [dvec2(8.0, 2.0), dvec2(2.0, 8.0)];
+        assert_eq!(count(&[DVec2::ZERO, flat, flat + flat], (8, 2)), 1, "on to the right");
+        assert_eq!(count(&[DVec2::ZERO, steep, steep + steep], (2, 8)), 1, "on upwards");
+        assert_eq!(
+            count(&[dvec2(0.0, 9.0), dvec2(3.0, 0.0), dvec2(9.0, 0.0)], (3, 0)),
+            2,
+            "from steep to flat"
+        );
+        assert_eq!(count(&[DVec2::ZERO, flat, dvec2(0.0, 4.0)], (8, 2)), 0, "turned back");
+    }
+
     proptest! {
+        #[test]
+        fn flat_chains_to_the_right_draw_no_column_twice(
+            start in (-20.0..20.0, -20.0..20.0), steps in prop::collection::vec((0.1..30.0, -1.0..1.0), 1..8),
+        ) {
+            let mut chain = vec![DVec2::from(start)];
+            for (along, slope) in steps {
+                let last = chain[chain.len() - 1];
+                chain.push(last + dvec2(along, along * slope));
+            }
+            let mut columns: Vec<i32> = Vec::new();
+            for ends in chain.windows(2).filter(|ends| Line { a: ends[0], b: ends[1], axis: StepAxis::Longer }.is_x_major()) {
+                let line = Line { a: ends[0], b: ends[1], axis: StepAxis::Longer };
+                line.step(-100..200, |(x, _), _| columns.push(x));
+            }
+            prop_assert!(columns.windows(2).all(|pair| pair[0] < pair[1]), "{columns:?}");
+        }
+
         #[test]
         fn both_directions_cover_the_same_pixels(
             ax in -50.0..250.0, ay in -50.0..250.0, bx in -50.0..250.0, by in -50.0..250.0,

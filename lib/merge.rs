@@ -49,7 +49,8 @@ impl Blend {
 pub enum Rounding {
     /// The fraction is cut off, as the book does.
     Truncate,
-    /// To the nearest, halves upwards: add ½, then truncate. Direct3D 11.3 functional specification, 3.2.3.6.
+    /// To the nearest, halves upwards: add ½, then truncate. The sum is rounded like any other, so that the number just below
+    /// a half may go up: of `f32`, 0.49999997. Direct3D 11.3 functional specification, 3.2.3.6.
     Nearest,
 }
 
@@ -140,6 +141,18 @@ mod tests {
         assert_eq!(Blend::Opaque.apply([1.0, 2.0, 3.0, 0.25], there), [1.0, 2.0, 3.0]);
         assert_eq!(Blend::SourceOver.apply([200.0, 0.0, 250.0, 0.25], there), [125.0, 150.0, 100.0]);
         assert_eq!(Blend::Additive.apply([200.0, 200.0, 4.0, 0.5], there), [200.0, 255.0, 52.0]);
+    }
+
+    #[test]
+    fn a_half_is_added_and_the_fraction_cut_off() {
+        let nearest = |channel: f64| Rounding::Nearest.color([channel; 3]).channels()[0];
+        assert_eq!(
+            [0.49999997, 0.5, 1.49, 254.5, 300.0, -1.0, f64::NAN].map(nearest),
+            [0, 1, 1, 255, 255, 0, 0]
+        );
+        let nearest = |channel: f32| Rounding::Nearest.color([channel; 3]).channels()[0];
+        assert_eq!([0.49999994, 0.49999997, 0.5].map(nearest), [0, 1, 1], "the sum is rounded");
+        assert_eq!(Rounding::Truncate.color([0.99_f32, 255.9, f32::NAN]), Color::rgb(0, 255, 0));
     }
 
     #[test]

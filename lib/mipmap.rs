@@ -49,8 +49,12 @@ impl MipMaps {
     // ANCHOR: mip_maps
     /// Makes the copies: each texel is the mean of four of the level before (of two where that is one texel wide or
     /// high; an odd last column or row is left out).
+    ///
+    /// # Panics
+    /// If the texture has more than 2²³ rows: those of all levels are counted in single precision.
     #[must_use]
     pub fn new(texture: &Texture) -> Self {
+        assert!(texture.height() <= 1 << 23, "mip maps of {} rows", texture.height());
         let row_bits = texture.width().next_power_of_two().trailing_zeros();
         let (mut levels, mut texels) = (Vec::new(), Vec::new());
         let mut next = Some(texture.clone());
@@ -162,6 +166,25 @@ mod tests {
         assert_eq!(sizes(8, 4), [(8, 4), (4, 2), (2, 1), (1, 1)]);
         assert_eq!(sizes(5, 3), [(5, 3), (2, 1), (1, 1)]);
         assert_eq!(sizes(1, 1), [(1, 1)]);
+    }
+
+    #[test]
+    fn rows_can_be_counted_in_single_precision() {
+        // As many as there may be, and the last level is the last row.
+        let height = 1 << 23;
+        let mut texels = vec![Color::BLACK; height];
+        texels[height / 2..].fill(Color::WHITE);
+        let maps = MipMaps::new(&Texture::new(1, height as u32, texels));
+        let rows: f64 = maps.levels.iter().map(|[_, height, _]| height).sum();
+        assert!(rows <= f64::from(1 << 24));
+        let at = |v: f32, level: f32| maps.bilinear([0.5, v], level, AddressMode::Clamp)[0];
+        assert_eq!([at(0.25, 22.0), at(0.75, 22.0), at(0.5, 23.0)], [0.0, 255.0, 128.0]);
+    }
+
+    #[test]
+    #[should_panic(expected = "8388609 rows")]
+    fn more_rows_are_refused() {
+        let _ = MipMaps::new(&Texture::new(1, (1 << 23) + 1, vec![Color::BLACK; (1 << 23) + 1]));
     }
 
     #[test]

@@ -41,6 +41,9 @@ use crate::target::Target;
 /// Draws a mesh into a target.
 ///
 /// Fragments reach a pixel in the order of the triangles in the mesh; of a clipped triangle, in the order of its fan.
+///
+/// # Panics
+/// If the planes of the target are not of the same size.
 pub fn draw<S: Shader<N>, Z: Rasterizer, P: Probe + ?Sized, const N: usize>(
     mesh: &Mesh<S::Attributes>,
     shader: &S,

@@ -50,6 +50,9 @@ pub trait Rasterizer {
 
     /// Draws the triangles in order, onto what is in the target: the load operation of the state is the pipeline's affair.
     /// Fragments reach a pixel in the order of their triangles.
+    ///
+    /// # Panics
+    /// If the planes of the target are not of the same size.
     fn draw<S: Shader<N>, P: Probe + ?Sized, const N: usize>(
         &self,
         triangles: impl Iterator<Item = [NdcVertex<N>; 3]>,
@@ -78,6 +81,7 @@ impl Rasterizer for Scanline {
         target: &mut Target,
         probe: &P,
     ) {
+        target.assert_same_size();
         for triangle in triangles {
             draw_triangle(&triangle, state, shader, target, probe);
         }

@@ -44,13 +44,15 @@ pub trait Real:
 
     /// A literal: the number nearest to `value`.
     fn of(value: f64) -> Self;
-    /// The lesser of two numbers; the other one if this one is NaN. The other one is none.
+    /// The lesser of two numbers: this one if it is less, else the other one. So the other one if either is NaN, and of two
+    /// zeros, whatever their signs.
     #[must_use]
     fn min(self, other: Self) -> Self;
-    /// The greater of two numbers; the other one if this one is NaN. The other one is none.
+    /// The greater of two numbers: this one if it is greater, else the other one. So the other one if either is NaN, and of
+    /// two zeros, whatever their signs.
     #[must_use]
     fn max(self, other: Self) -> Self;
-    /// The greatest whole number that is not greater.
+    /// The greatest whole number that is not greater; −0 for −0.
     #[must_use]
     fn floor(self) -> Self;
     /// The square root, rounded once.
@@ -137,7 +139,7 @@ macro_rules! plain_number {
 
             #[inline]
             fn min(self, other: Self) -> Self {
-                // As the method of the same name, but where `other` is NaN: one instruction instead of four.
+                // As the method of the same name, but for NaN and zeros: one instruction instead of four.
                 if self < other { self } else { other }
             }
 

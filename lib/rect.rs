@@ -34,10 +34,13 @@ pub struct Rect {
 }
 
 impl Rect {
-    /// The rectangle of `width` × `height` pixels with its lower left pixel at (0, 0).
+    /// The rectangle of `width` × `height` pixels with its lower left pixel at (0, 0); a side has at most 2³¹ − 1.
     #[must_use]
     pub const fn sized(width: u32, height: u32) -> Self {
-        Self { left: 0, bottom: 0, right: width as i32, top: height as i32 }
+        const MOST: u32 = i32::MAX as u32;
+        let [right, top] =
+            [if width < MOST { width } else { MOST }, if height < MOST { height } else { MOST }];
+        Self { left: 0, bottom: 0, right: right as i32, top: top as i32 }
     }
 
     /// Whether the pixel (x, y) belongs to the rectangle.
@@ -96,6 +99,14 @@ const fn length(from: i32, to: i32) -> u32 {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+
+    #[test]
+    fn sides_end_where_columns_and_rows_do() {
+        let most = Rect { left: 0, bottom: 0, right: i32::MAX, top: i32::MAX };
+        assert_eq!(Rect::sized(u32::MAX, 1 << 31), most);
+        assert_eq!(Rect::sized(i32::MAX as u32, i32::MAX as u32), most);
+        assert_eq!(Rect::sized(0, 3), Rect { left: 0, bottom: 0, right: 0, top: 3 });
+    }
 
     proptest! {
         #[test]

@@ -255,8 +255,8 @@ impl Span {
     #[must_use]
     pub fn columns(&self) -> Range<i32> {
         let first = (self.start as i32).max(self.scissor.left);
-        let last = (self.end.floor() as i32).min(self.scissor.right - 1);
-        if self.start <= self.end && first <= last { first..last + 1 } else { 0..0 }
+        let end = (self.end.floor() as i32).saturating_add(1).min(self.scissor.right);
+        if self.start <= self.end && first < end { first..end } else { 0..0 }
     }
     // ANCHOR_END: span
 }
@@ -363,6 +363,20 @@ pub(crate) mod tests {
             },
         );
         assert_eq!(rows, 1);
+    }
+
+    #[test]
+    fn columns_at_the_ends_of_all_numbers() {
+        let columns = |start, end, [left, right]: [i32; 2]| {
+            let scissor = Rect { left, bottom: 0, right, top: 1 };
+            Span { y: 0, start, end, scissor }.columns()
+        };
+        let (least, most) = (i32::MIN, i32::MAX);
+        assert_eq!(columns(-1e300, 1e300, [least, most]), least..most);
+        assert_eq!(columns(-1e300, -1e10, [0, 10]), 0..0);
+        assert_eq!(columns(0.0, 1e300, [least, least]), 0..0, "a scissor without columns");
+        assert_eq!(columns(2.0, 1e300, [0, most]), 2..most);
+        assert_eq!(columns(f64::NAN, 3.0, [0, 10]), 0..0);
     }
 
     fn point() -> impl Strategy<Value = DVec2> {

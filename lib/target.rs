@@ -22,7 +22,8 @@ use crate::observer::SharedObserver;
 use crate::payload::Walk;
 use crate::real::Scalar;
 
-/// What is drawn into: a plane of colors and a plane of depths, of the precision in which the rasterizer computes.
+/// What is drawn into: a plane of colors and a plane of depths, of the precision in which the rasterizer computes. Both have
+/// the same size: rasterizers refuse others.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Target<D = f64> {
     /// The picture.
@@ -47,6 +48,15 @@ impl<D: Scalar> Target<D> {
         let mut target = Self::sized(framebuffer.width(), framebuffer.height());
         target.set_observer(framebuffer.observer());
         target
+    }
+
+    /// Both planes must have a place for each pixel.
+    ///
+    /// # Panics
+    /// If they are not of the same size.
+    pub(crate) fn assert_same_size(&self) {
+        let [color, depth] = [self.color.rect(), self.depth.rect()].map(|rect| (rect.right, rect.top));
+        assert!(color == depth, "a target of {color:?} colors and {depth:?} depths");
     }
 
     /// From now on this one observes both planes, and no other.

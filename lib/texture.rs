@@ -165,6 +165,9 @@ impl Texture {
     // ANCHOR_END: nearest
 
     /// The mixture of the four texels around (u, v), as channels in 0..=255.
+    ///
+    /// Infinite coordinates mean the border for [`AddressMode::Clamp`], and NaN the first texel, as in [`Self::nearest`]. For
+    /// the others they have no fraction: the mixture is NaN.
     #[must_use]
     #[inline]
     pub fn bilinear<R: Real>(&self, uv: [R; 2], mode: AddressMode) -> [R; 3] {
@@ -223,7 +226,14 @@ pub(crate) fn bilinear<R: Real>(
     mode: AddressMode,
     texel: impl Fn(R, R) -> [R; 3],
 ) -> [R; 3] {
-    let [x, y] = [u * width - R::of(0.5), v * height - R::of(0.5)];
+    let [x, y] = [(u, width), (v, height)].map(|(coordinate, count)| {
+        let along = coordinate * count - R::of(0.5);
+        match mode {
+            // Farther out there is nothing new, and infinity has no fraction.
+            AddressMode::Clamp => along.max(R::of(-1.0)).min(count),
+            AddressMode::Repeat | AddressMode::Mirror => along,
+        }
+    });
     let columns = [x.floor(), x.floor() + R::of(1.0)].map(|column| mode.apply(column, width));
     let rows = [y.floor(), y.floor() + R::of(1.0)].map(|row| mode.apply(row, height));
     let mixed = rows.map(|row| linear(texel(columns[0], row), texel(columns[1], row), x - x.floor()));
@@ -278,6 +288,20 @@ mod tests {
                 let _ = texture.bilinear([u, u], mode);
             }
         }
+    }
+
+    #[test]
+    fn clamped_coordinates_may_be_infinite() {
+        let texture = Texture::new(2, 2, [0, 100, 40, 140].map(Color::gray).to_vec());
+        let at = |u: f64, v: f64| texture.bilinear([u, v], AddressMode::Clamp)[0];
+        let far = f64::INFINITY;
+        assert_eq!([at(far, far), at(-far, far), at(far, -far), at(-far, -far)], [140.0, 40.0, 100.0, 0.0]);
+        assert_eq!(at(far, 0.5), 120.0, "between the rows of the last column");
+        assert_eq!(at(f64::NAN, far), 40.0, "the first column, as the nearest texel");
+        for (u, near) in [(-3.0, -0.25), (9.0, 1.25), (1e30, 1.0), (-1e30, 0.0)] {
+            assert_eq!(at(u, 0.4), at(near, 0.4));
+        }
+        assert!(texture.bilinear([far, 0.5], AddressMode::Repeat)[0].is_nan());
     }
 
     #[test]

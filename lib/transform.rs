@@ -330,11 +330,14 @@ pub fn about(pivot: DVec3, transformation: DMat4) -> DMat4 {
 /// ```
 ///
 /// The eye is subtracted, not the target: the eye becomes the origin. Left-handed. Not finite if `up` points along the
-/// line of sight. Source: second and fourth note (world to view space).
+/// line of sight, to within 10⁻¹² of a full angle: what is left of it then comes from rounding. Source: second and fourth
+/// note (world to view space).
 #[must_use]
 pub fn look_at(eye: DVec3, target: DVec3, up: DVec3) -> DMat4 {
     let forward = (target - eye).normalize();
-    let right = up.cross(forward).normalize();
+    let right = up.cross(forward);
+    let is_along = right.length() <= 1e-12 * up.length();
+    let right = if is_along { DVec3::NAN } else { right.normalize() };
     let up = forward.cross(right);
     let row = |axis: DVec3| axis.extend(-axis.dot(eye)).to_array();
     rows([row(right), row(up), row(forward), [0.0, 0.0, 0.0, 1.0]])
@@ -496,6 +499,20 @@ mod tests {
         assert!(apply(view_from_world, target + DVec3::Y).y > 0.0, "up is up");
         let right = apply(view_from_world, target + dvec3(1.0, 0.0, 0.0));
         assert!(right.x > 0.0, "seen along +z, +x is on the right");
+    }
+
+    #[test]
+    fn up_along_the_line_of_sight_gives_no_picture() {
+        for i in 0..1000 {
+            let [x, y, z] = [7, 11, 13].map(|k| f64::from(i * k % 97) - 45.3);
+            let (eye, up) = (dvec3(z, x, y), dvec3(x, y, z));
+            for up in [up, -up, up * 1e-9] {
+                let view = look_at(eye, eye + dvec3(x, y, z) * 3.7, up);
+                assert!(view.x_axis.x.is_nan() && !view.is_finite(), "{view}");
+            }
+            let beside = look_at(eye, eye + dvec3(x, y, z) * 3.7, up + dvec3(-y, x, 0.0) * 1e-6);
+            assert!(beside.is_finite());
+        }
     }
 
     #[test]

@@ -338,12 +338,66 @@ proptest! {
     }
 }
 
+/// The largest difference of a channel between both precisions, where most digits cancel: in pixels whose centers lie on the
+/// far edge of a triangle, which is so many times as far away as its near vertex.
+fn difference_on_far_edges(ratio: f64) -> u8 {
+    let mut state = 1_u64;
+    let mut next = move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as f64 / (1_u64 << 31) as f64
+    };
+    let mut most = 0;
+    for round in 0..1000 {
+        // Its left edge: what lies on it is covered.
+        let x = ((next() * 20.0).floor() + 0.5) / 20.0 - 1.0;
+        let corners =
+            [(x + next(), next() * 2.0 - 1.0, 1.0), (x, 0.9, ratio), (x, -0.9, ratio * (0.5 + 0.5 * next()))];
+        let mut vertices = corners
+            .map(|(x, y, w)| (dvec4(x * w, y * w, 0.5 * w, w), [next(), next(), next()].map(|v| v * 255.0)));
+        vertices.rotate_left(round % 3);
+        let mesh = Mesh::unindexed(vertices.to_vec()).expect("a triangle");
+        let colors = [picture(&mesh, &Exact::<f64>::new()).color, picture(&mesh, &Exact::<f32>::new()).color];
+        let [double, single] = colors.map(|color| color.rgb_from_top());
+        most = double.iter().zip(single).map(|(a, b)| a.abs_diff(b)).fold(most, u8::max);
+    }
+    most
+}
+
+#[test]
+fn colors_of_both_precisions_differ_by_one_up_to_ten_thousand_times_the_distance() {
+    assert!(difference_on_far_edges(1e4) <= 1);
+    assert!(difference_on_far_edges(1e6) > 1, "far beyond that single precision shows");
+}
+
 fn picture<Z: Rasterizer>(mesh: &Mesh<(DVec4, [f64; 3])>, rasterizer: &Z) -> Target<Z::Depth> {
     let state = RenderState::default();
     let mut target = Target::sized(40, 30);
     target.clear(state.clear_color, Z::Depth::of(state.clear_depth));
     draw(mesh, &Flat, &state, rasterizer, &mut target, &Silent);
     target
+}
+
+#[test]
+fn what_is_beside_the_eye_is_cut_and_not_lost() {
+    // From far on the right, beside the eye, into the picture.
+    let corners = |w| [dvec4(-0.5, -0.8, 0.5, 1.0), dvec4(1.0, 0.0, 0.5, w), dvec4(-0.5, 0.8, 0.5, 1.0)];
+    let count = |w, volume| {
+        let mesh = Mesh::unindexed(corners(w).map(|corner| (corner, [0.0; 3])).to_vec()).expect("a triangle");
+        let state = RenderState {
+            clip_volume: volume,
+            merge: Merge { depth_test: DepthTest::Always, ..Merge::default() },
+            ..RenderState::default()
+        };
+        let mut target = Target::new(64, 48);
+        let counter = Counter::new(&target);
+        draw(&mesh, &Flat, &state, &Exact::<f64>::new(), &mut target, &counter);
+        counter.0.into_inner()
+    };
+    for volume in [ClipVolume::Everything, ClipVolume::InFront(0.0)] {
+        let beside = count(0.0, volume);
+        assert!(beside.iter().sum::<u32>() > 1000);
+        assert_eq!(beside, count(1e-12, volume));
+    }
 }
 
 #[test]

@@ -1,22 +1,19 @@
 //! The fast rasterizer draws what the exact one draws in single precision: the same colors and depths, to the last bit.
 
-#[path = "support/chapters.rs"]
-mod chapters;
 #[path = "support/targets.rs"]
 mod targets;
 
 use std::array::from_fn;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use chapters::CHAPTERS;
 use glam::{DVec2, DVec4, dvec2, dvec4};
 use proptest::prelude::*;
+use proptest::test_runner::contextualize_config;
 use rasterbook::area::Winding;
-use rasterbook::clip::{ClipVolume, DepthRange};
+use rasterbook::clip::{ClipTest, ClipVolume, DepthRange};
 use rasterbook::cull::CullMode;
-use rasterbook::depth::{DepthEncoding, DepthTest};
+use rasterbook::depth::{DepthBuffer, DepthEncoding, DepthTest};
 use rasterbook::exact::Exact;
-use rasterbook::figure::{DrawOptions, RasterizerChoice};
 use rasterbook::interpolate::Interpolation;
 use rasterbook::merge::{Blend, Merge};
 use rasterbook::shader::Paint;
@@ -25,8 +22,7 @@ use rasterbook::tiled::Tiled;
 use rasterbook::transform::Viewport;
 use rasterbook::varyings::Derivatives;
 use rasterbook::{
-    ClipVertex, Color, Framebuffer, LoadOp, Mesh, Real, RenderState, Scanline, Shaded, Shader, Silent,
-    Target, draw,
+    ClipVertex, Color, LoadOp, Mesh, Real, RenderState, Scanline, Shaded, Shader, Silent, Target, draw,
 };
 use targets::assert_same;
 
@@ -167,25 +163,84 @@ fn records() -> impl Strategy<Value = Vec<Record>> {
     prop::collection::vec(triangle, 0..40).prop_map(|triangles| triangles.concat())
 }
 
+/// A number that arithmetic is seldom asked about: huge, tiny, infinite, none; and some that are quite ordinary.
+fn odd() -> impl Strategy<Value = f64> {
+    const ODD: [f64; 14] = [
+        -0.0,
+        f64::MIN_POSITIVE,
+        5e-324,
+        1e-40,
+        1.5e308,
+        -1.5e308,
+        f64::MAX,
+        f32::MAX as f64,
+        -3e38,
+        1e300,
+        -1e300,
+        f64::INFINITY,
+        f64::NEG_INFINITY,
+        f64::NAN,
+    ];
+    // From 1e37 to 1e300.
+    let huge = (123_u64..997, 0_u64..1 << 52, any::<bool>()).prop_map(|(exponent, fraction, is_negative)| {
+        let size = f64::from_bits((1023 + exponent) << 52 | fraction);
+        if is_negative { -size } else { size }
+    });
+    let whole = (-2..3).prop_map(f64::from);
+    prop_oneof![8 => -1.5..1.5, 8 => whole, 2 => -300.0..300.0, 4 => huge, 2 => prop::sample::select(&ODD[..])]
+}
+
+/// A corner made of such numbers.
+fn odd_record() -> impl Strategy<Value = Record> {
+    let w = prop_oneof![4 => 0.2..5.0, 2 => Just(1.0), 1 => Just(0.0), 1 => Just(-1.0), 1 => odd()];
+    let position = (odd(), odd(), odd(), w).prop_map(|(x, y, z, w)| dvec4(x, y, z, w));
+    let values = prop_oneof![Just([0.5; 5]), prop::array::uniform5(odd())];
+    (position, values)
+}
+
+/// Scenes in which such corners stand beside ordinary ones.
+fn odd_records() -> impl Strategy<Value = Vec<Record>> {
+    let corner = || prop_oneof![2 => odd_record(), 1 => record()];
+    let triangle = prop::array::uniform3(corner());
+    prop::collection::vec(triangle, 1..12).prop_map(|triangles| triangles.concat())
+}
+
 fn state() -> impl Strategy<Value = RenderState> {
     let modes = (
         prop_oneof![Just(CullMode::None), Just(CullMode::Back), Just(CullMode::Front)],
         prop_oneof![Just(Winding::Clockwise), Just(Winding::CounterClockwise)],
         prop_oneof![
-            Just(DepthTest::Less),
-            Just(DepthTest::LessOrEqual),
-            Just(DepthTest::Greater),
-            Just(DepthTest::Always)
+            1 => Just(DepthTest::Less),
+            3 => Just(DepthTest::LessOrEqual),
+            1 => Just(DepthTest::Greater),
+            1 => Just(DepthTest::Always)
         ],
-        prop_oneof![Just(Blend::Opaque), Just(Blend::SourceOver), Just(Blend::Additive)],
-        prop_oneof![Just(Interpolation::Affine), Just(Interpolation::PerspectiveCorrect)],
-        prop_oneof![3 => Just(DepthEncoding::Ndc), 1 => Just(DepthEncoding::ViewZ)],
-        prop_oneof![4 => Just(ClipVolume::Canonical), 1 => Just(ClipVolume::InFront(0.1)), 1 => Just(ClipVolume::Everything)],
+        prop_oneof![2 => Just(Blend::Opaque), 1 => Just(Blend::SourceOver), 1 => Just(Blend::Additive)],
+        prop_oneof![
+            1 => Just(Interpolation::Affine),
+            3 => Just(Interpolation::PerspectiveCorrect),
+            1 => Just(Interpolation::Reciprocal)
+        ],
+        prop_oneof![4 => Just(DepthEncoding::Ndc), 1 => Just(DepthEncoding::ViewZ), 1 => Just(DepthEncoding::Reciprocal)],
     );
-    (modes, any::<bool>(), any::<bool>(), any::<bool>()).prop_map(|(modes, depth_write, is_zero, is_part)| {
-        let (cull, front_face, depth_test, blend, interpolation, depth_encoding, clip_volume) = modes;
-        let load = if is_zero { LoadOp::Clear } else { LoadOp::Load };
-        let viewport = is_part.then_some(Viewport { x: 11.0, y: 5.5, width: 50.0, height: 33.0 });
+    let view = (
+        prop_oneof![
+            4 => Just(ClipVolume::Canonical),
+            1 => prop::sample::select(vec![0.1, 0.0, -1.0, 1e300]).prop_map(ClipVolume::InFront),
+            1 => Just(ClipVolume::Everything)
+        ],
+        prop_oneof![2 => Just(ClipTest::BeforeDivide), 1 => Just(ClipTest::AfterDivide)],
+        prop_oneof![
+            4 => Just(None),
+            2 => Just(Some(Viewport { x: 11.0, y: 5.5, width: 50.0, height: 33.0 })),
+            1 => Just(Some(Viewport { x: 60.0, y: -7.0, width: -50.0, height: 3e5 }))
+        ],
+    );
+    let depth = (any::<bool>(), any::<bool>(), prop::sample::select(vec![1.0, 4.0, 4.0, 1e39, f64::NAN]));
+    (modes, view, any::<bool>(), depth).prop_map(|(modes, view, is_cleared, depth)| {
+        let (cull, front_face, depth_test, blend, interpolation, depth_encoding) = modes;
+        let (clip_volume, clip_test, viewport) = view;
+        let (depth_write, is_zero, clear_depth) = depth;
         RenderState {
             cull,
             front_face,
@@ -193,11 +248,12 @@ fn state() -> impl Strategy<Value = RenderState> {
             interpolation,
             depth_encoding,
             clip_volume,
+            clip_test,
             depth_range: if is_zero { DepthRange::ZeroToOne } else { DepthRange::NegativeOneToOne },
             viewport,
-            load,
+            load: if is_cleared { LoadOp::Clear } else { LoadOp::Load },
             clear_color: Color::rgb(40, 5, 60),
-            clear_depth: if depth_test == DepthTest::Greater { -1.0 } else { 4.0 },
+            clear_depth: if depth_test == DepthTest::Greater { -clear_depth } else { clear_depth },
             ..RenderState::default()
         }
     })
@@ -220,8 +276,31 @@ fn size() -> impl Strategy<Value = (u32, u32)> {
     ]
 }
 
+/// So many random scenes, unless `PROPTEST_CASES` says otherwise.
+fn cases(cases: u32) -> ProptestConfig {
+    contextualize_config(ProptestConfig { cases, ..ProptestConfig::default() })
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(128))]
+    #![proptest_config(cases(512))]
+
+    #[test]
+    fn tiled_equals_exact_for_any_numbers(
+        records in odd_records(), state in state(), mode in mode(), is_filtered in any::<bool>(), is_sloped in any::<bool>(),
+        size in prop_oneof![4 => (1_u32..24, 1_u32..40), 1 => (120_u32..140, 28_u32..36)],
+    ) {
+        let mesh = Mesh::unindexed(records).expect("whole triangles");
+        let shader = busy(mode, is_filtered);
+        if is_sloped {
+            compare(&mesh, &Sloped(shader), &state, size);
+        } else {
+            compare(&mesh, &shader, &state, size);
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(cases(128))]
 
     #[test]
     fn tiled_equals_exact(records in records(), state in state(), mode in mode(), is_filtered in any::<bool>(), is_sloped in any::<bool>(),
@@ -379,6 +458,25 @@ fn a_corner_that_is_too_far_away() {
     }
 }
 
+/// A triangle without color.
+fn bare(corners: [[f64; 4]; 3]) -> Mesh<Record> {
+    let records = corners.map(|corner| (DVec4::from_array(corner), [0.0; 5]));
+    Mesh::unindexed(records.to_vec()).expect("one triangle")
+}
+
+#[test]
+fn what_lies_beyond_a_plane_as_a_whole() {
+    // Nearer than the near plane, all three. When the right plane has cut, rounding has moved what is left behind it.
+    let near = [[1e38, 0.0, -1e300, 0.0], [0.0, 0.0, -1e38, 1.0], [1.0, 1.0, -1.2, 1.0]];
+    let merge = Merge { depth_test: DepthTest::Always, ..Merge::default() };
+    let state = RenderState { merge, ..RenderState::default() };
+    compare(&bare(near), &Counted::default(), &state, (1, 2));
+    // The divide turns the near plane round for the second: what seems to be beyond it is not, once the top has cut.
+    let seemingly = [[0.0, 0.5, -1.0, 0.4], [0.5, 0.0, 175.0, -1.0], [0.0, 0.0, -260.0, 2.0]];
+    let state = RenderState { clip_test: ClipTest::AfterDivide, ..state };
+    compare(&bare(seemingly), &Counted::default(), &state, (8, 16));
+}
+
 #[test]
 fn thousands_of_clipped_triangles() {
     let mut next = numbers(99);
@@ -393,54 +491,6 @@ fn thousands_of_clipped_triangles() {
         .collect();
     let mesh = Mesh::unindexed(records).expect("whole triangles");
     compare(&mesh, &busy(AddressMode::Repeat, true), &RenderState::default(), (200, 150));
-}
-
-#[test]
-fn every_variant_of_the_pipeline() {
-    for (chapter, _) in CHAPTERS {
-        for variant in chapter.variants.iter().filter(|variant| variant.rasterizer.is_some()) {
-            let subject = variant.subject().expect("assets");
-            let picture =
-                |rasterizer| variant.draw(&DrawOptions { rasterizer, ..variant.options(subject.as_ref()) });
-            let [scanline, edge, tiled] =
-                [RasterizerChoice::Scanline, RasterizerChoice::Exact, RasterizerChoice::Tiled].map(picture);
-            let differ = |a: &Framebuffer, b: &Framebuffer, by: u8| {
-                a.rows_from_top()
-                    .flatten()
-                    .zip(b.rows_from_top().flatten())
-                    .filter(|(a, b)| a.channels().iter().zip(b.channels()).any(|(a, b)| a.abs_diff(b) > by))
-                    .count()
-            };
-            // In double precision the coverage is the same, and colors differ only where a border of texels is near.
-            let off = differ(&edge, &tiled, 1);
-            assert!(
-                off <= 40 + variant.size.0 as usize,
-                "{}: {off} pixels differ from the exact rasterizer",
-                variant.name
-            );
-            // The book's rule puts pixels elsewhere, by less than one. Where texels are smaller than pixels, that shows.
-            let (off, pixels) =
-                (displaced(&scanline, &edge), variant.size.0 as usize * variant.size.1 as usize);
-            assert!(off <= pixels / 25, "{}: scanline shows what is not near in {off} pixels", variant.name);
-        }
-    }
-}
-
-/// How many pixels of a picture have a channel that is darker or brighter, by more than 2, than all of the other
-/// picture's pixels there and next to it.
-fn displaced(picture: &Framebuffer, other: &Framebuffer) -> usize {
-    let rect = picture.rect();
-    let is_displaced = |&(x, y): &(i32, i32)| {
-        let color = picture.get(x, y).expect("inside").channels();
-        let near = (y - 1..=y + 1).flat_map(|y| (x - 1..=x + 1).map(move |x| (x, y)));
-        let around: Vec<_> = near.filter_map(|(x, y)| other.get(x, y)).map(Color::channels).collect();
-        (0..3).any(|k| {
-            let channels = || around.iter().map(|color| color[k]);
-            let (least, most) = (channels().min().expect("itself"), channels().max().expect("itself"));
-            !(least.saturating_sub(2)..=most.saturating_add(2)).contains(&color[k])
-        })
-    };
-    rect.rows().flat_map(|y| rect.columns().map(move |x| (x, y))).filter(is_displaced).count()
 }
 
 #[test]
@@ -552,6 +602,40 @@ fn layers_with_holes_on_what_was_there() {
         };
         assert_same(&both(Some(&Tiled::new())), &both(None));
     }
+}
+
+#[test]
+#[should_panic(expected = "(8, 8) colors and (8, 4) depths")]
+fn planes_of_two_sizes_are_refused() {
+    let mut target = Target::<f32>::sized(8, 8);
+    target.depth = DepthBuffer::new(8, 4);
+    let mesh = bare([[-1.0, -1.0, 0.0, 1.0], [1.0, -1.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0]]);
+    draw_onto(&mut target, &mesh, &Counted::default(), &RenderState::default(), Some(&Tiled::new()));
+}
+
+#[test]
+#[should_panic(expected = "(8, 8) colors and (8, 4) depths")]
+fn planes_of_two_sizes_are_refused_by_the_exact_one_too() {
+    let mut target = Target::<f32>::sized(8, 8);
+    target.depth = DepthBuffer::new(8, 4);
+    let mesh = bare([[-1.0, -1.0, 0.0, 1.0], [1.0, -1.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0]]);
+    draw_onto(&mut target, &mesh, &Counted::default(), &RenderState::default(), None);
+}
+
+#[test]
+fn depths_that_overflow_hide_nothing() {
+    // From −3·10³⁸ to 10³⁸: the difference is infinite in single precision, and so is every depth but the first.
+    let corners = |z: [f64; 3]| {
+        let corners = [(-1.0, -1.0), (2.0, -1.0), (-1.0, 2.0)];
+        let records: [Record; 3] = from_fn(|i| {
+            (dvec4(corners[i].0, corners[i].1, z[i], 1.0), [100.0 + 50.0 * z[0].abs().min(1.0); 5])
+        });
+        records
+    };
+    let records = [corners([-3e38, 1e38, 1e38]), corners([0.0; 3])].concat();
+    let state = RenderState { clip_volume: ClipVolume::Everything, ..RenderState::default() };
+    let mesh = Mesh::unindexed(records).expect("two triangles");
+    compare(&mesh, &Counted::default(), &state, (300, 80));
 }
 
 #[test]

@@ -81,7 +81,8 @@ pub struct EdgeFunction {
 }
 
 impl EdgeFunction {
-    /// The function of the edge from a to b.
+    /// The function of the edge from a to b: exact, if neither is farther than 2²⁴ from the origin along x or y, as
+    /// [`snap`] sees to. Beyond 2³⁰ it may overflow.
     #[must_use]
     #[inline]
     pub fn new(a: Subpixel, b: Subpixel) -> Self {
@@ -89,7 +90,8 @@ impl EdgeFunction {
         Self { step_x, step_y, constant: -(step_x * a[0] + step_y * a[1]) }
     }
 
-    /// Its value at a point.
+    /// Its value at a point: exact up to 2³⁶ from the origin along x and y, which is farther than any picture goes. Beyond it
+    /// may overflow.
     #[must_use]
     #[inline]
     pub fn at(&self, [x, y]: Subpixel) -> i64 {
@@ -196,7 +198,7 @@ impl Coverage {
         Some(Self { vertices: [a, b, c], edges, twice_area: signed_area.abs(), winding })
     }
 
-    /// The values of the three edge functions at a point.
+    /// The values of the three edge functions at a point, as far as [`EdgeFunction::at`] reaches.
     #[must_use]
     #[inline]
     pub fn edge_values(&self, point: Subpixel) -> [i64; 3] {
@@ -306,6 +308,10 @@ impl Coverage {
     #[must_use]
     #[inline]
     pub fn covered_columns(&self, columns: Range<i32>, y: i32) -> Range<i32> {
+        // No center is covered so far away, and there edge functions would overflow.
+        const FAR: i32 = FARTHEST as i32 + 1;
+        let columns = columns.start.clamp(-FAR, FAR)..columns.end.clamp(-FAR, FAR);
+        let y = y.clamp(-FAR, FAR);
         let values = self.edge_values(center(columns.start, y));
         let [a, b, c] = from_fn(|i| self.edges[i].columns(columns.clone(), values[i]));
         a.start.max(b.start).max(c.start)..a.end.min(b.end).min(c.end)
@@ -393,6 +399,44 @@ mod tests {
             ..........\n";
         assert_eq!(drawn(&[[A, B, C], [A, C, D]]), expected);
         assert_eq!(drawn(&[[B, C, D], [A, B, D]]), expected, "the other diagonal");
+    }
+
+    #[test]
+    fn exact_as_far_as_is_said() {
+        let far = 1_i64 << 24;
+        let positions = [[-far, -far], [far, far], [far, -far], [-far + 1, far], [0, 0], [1, -1]];
+        let farthest = 1_i64 << 36;
+        let points =
+            [[farthest, -farthest], [-farthest, -farthest], [-farthest, farthest], [far, 0], [128, 128]];
+        for (a, b) in positions.iter().flat_map(|&a| positions.map(|b| (a, b))) {
+            let edge = EdgeFunction::new(a, b);
+            for point in points {
+                let [[ax, ay], [bx, by], [x, y]] = [a, b, point].map(|place| place.map(i128::from));
+                assert_eq!(i128::from(edge.at(point)), (bx - ax) * (y - ay) - (by - ay) * (x - ax));
+            }
+        }
+        let _ = EdgeFunction::new([1 << 30, -1 << 30], [-1 << 30, 1 << 30]);
+    }
+
+    #[test]
+    fn any_row_and_any_columns_can_be_asked_for() {
+        let far = 65_536.0;
+        let whole = Coverage::new([dvec2(-far, -far), dvec2(far, -far), dvec2(-far, far)]).expect("area");
+        let small = Coverage::new([A, B, D].map(DVec2::from)).expect("area");
+        let all = i32::MIN..i32::MAX;
+        assert_eq!(whole.covered_columns(all.clone(), 0), -65_536..-1);
+        assert_eq!(small.covered_columns(all.clone(), 1), 1..5);
+        for y in [i32::MIN, -65_537, 65_536, i32::MAX] {
+            assert!(whole.covered_columns(all.clone(), y).is_empty());
+            assert!(small.covered_columns(all.clone(), y).is_empty());
+        }
+        for columns in [i32::MIN..-70_000, 70_000..i32::MAX, 5..3, i32::MAX..i32::MIN] {
+            assert!(small.covered_columns(columns, 1).is_empty());
+        }
+        assert_eq!(
+            small.pixels(Rect { left: i32::MIN, bottom: i32::MIN, right: i32::MAX, top: i32::MAX }).count(),
+            10
+        );
     }
 
     #[test]

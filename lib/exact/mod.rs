@@ -15,16 +15,17 @@
 //! **Which values.** Weights are E · (1 / sum of the three E), E the exact values of the edge functions at the center,
 //! converted, divided and multiplied with one rounding each. In the first covered pixel of a row 1/ω, V/ω and the depth
 //! are interpolated by these weights; in the nth after it they are that plus n times their change from pixel to pixel,
-//! which comes from the change of E in the same way. V = (V/ω) · 1/(1/ω). The depth is linear on the screen. All
-//! arithmetic is that of the number type: four operations, one rounding each.
+//! which comes from the change of E in the same way. V/ω is V · (1/ω), and V = (V/ω) · 1/(1/ω). The depth is linear on the
+//! screen. All arithmetic is that of the number type: four operations, one rounding each.
 //!
-//! **Which rounding.** Channels are rounded to the nearest of 0..=255, halves upwards; NaN gives 0.
+//! **Which rounding.** To a channel ½ is added, and the fraction of the sum cut off: the nearest of 0..=255, halves upwards.
+//! NaN gives 0.
 //!
 //! Triangles that share an edge, with the same two vertices, leave no hole along it and draw nothing twice. Where a
 //! vertex of one lies in the middle of an edge of another (a T-junction), rounding may move it off that edge.
 //!
-//! Vertices outside twice the width and height of the view, and behind the eye, are clipped away before they are
-//! rounded (a *guard band*); a triangle that is still farther than 2¹⁶ pixels from the origin is not drawn.
+//! Vertices outside twice the width and height of the view, beside the eye (ω = 0) and behind it, are clipped away before
+//! they are rounded (a *guard band*); a triangle that is still farther than 2¹⁶ pixels from the origin is not drawn.
 //!
 //! Sources: Direct3D 11.3 functional specification, 3.2.3.6 (colors), 3.3 (pixel centers), 3.4.1 (snapping), 3.4.2.1
 //! (top-left rule), 15.11.1 (facing); Vulkan specification, *Basic polygon rasterization* (values by weights); OpenGL
@@ -77,6 +78,7 @@ impl<R: Scalar> Rasterizer for Exact<R> {
         target: &mut Target<R>,
         probe: &P,
     ) {
+        target.assert_same_size();
         for triangle in triangles {
             if triangle.iter().all(is_in_guard_band) {
                 draw_triangle::<R, S, P, N>(&triangle, state, shader, target, probe);

@@ -68,8 +68,14 @@ pub struct Samples<'a> {
 
 impl<'a> Samples<'a> {
     /// `width` × `height` pixels, black and infinitely far away.
+    ///
+    /// # Panics
+    /// If the pattern is empty, or a side is 0 or larger than [`Framebuffer::MAX_SIDE`].
     #[must_use]
     pub fn new(width: u32, height: u32, pattern: &'a Pattern) -> Self {
+        let sides = 1..=Framebuffer::MAX_SIDE;
+        assert!(sides.contains(&width) && sides.contains(&height), "no picture has {width}×{height} pixels");
+        assert!(!pattern.is_empty(), "a pixel without samples has no color");
         let count = width as usize * height as usize * pattern.len();
         Self {
             pattern,
@@ -99,9 +105,10 @@ impl<'a> Samples<'a> {
         self.pattern.iter().map(move |offset| from_fn(|i| corner[i] + offset[i])).enumerate()
     }
 
-    /// Gives a sample of the pixel (x, y) a color, unless what it holds is nearer. Outside nothing happens.
+    /// Gives a sample of the pixel (x, y) a color, unless what it holds is nearer. Outside, and for a sample that the
+    /// pattern does not have, nothing happens.
     pub fn draw(&mut self, x: i32, y: i32, sample: usize, depth: f64, color: Color) {
-        let Some(pixel) = self.rect.index(x, y) else { return };
+        let Some(pixel) = self.rect.index(x, y).filter(|_| sample < self.pattern.len()) else { return };
         let index = pixel * self.pattern.len() + sample;
         if let Some(observer) = &self.observer {
             let stored = self.depths[index];
@@ -156,6 +163,28 @@ mod tests {
             places.sort_unstable();
             assert_eq!(places, [32, 96, 160, 224]);
         }
+    }
+
+    #[test]
+    fn a_sample_that_there_is_not_changes_nothing() {
+        let mut samples = Samples::new(2, 1, &CENTER);
+        for sample in [1, 2, usize::MAX] {
+            samples.draw(0, 0, sample, 0.0, Color::WHITE);
+            samples.draw(1, 0, sample, 0.0, Color::WHITE);
+        }
+        assert!(samples.resolved().rows_from_top().flatten().all(|&color| color == Color::BLACK));
+    }
+
+    #[test]
+    #[should_panic(expected = "without samples")]
+    fn a_pattern_has_samples() {
+        let _ = Samples::new(2, 1, &[]);
+    }
+
+    #[test]
+    #[should_panic(expected = "0×1 pixels")]
+    fn a_picture_has_pixels() {
+        let _ = Samples::new(0, 1, &CENTER);
     }
 
     #[test]

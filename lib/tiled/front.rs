@@ -174,7 +174,7 @@ fn assemble<S: Shader<N>, const N: usize>(
     let triangle = mesh.triangle(number);
     let outside = vertices.outside(triangle);
     let (any, all) = (outside[0] | outside[1] | outside[2], outside[0] & outside[1] & outside[2]);
-    let beyond_a_plane = all & !NOT_REPRESENTABLE != 0;
+    let beyond_a_plane = context.projection.state.clip_test.keeps_sides() && all & !NOT_REPRESENTABLE != 0;
     if any == 0 {
         chunk.add(number as u32, vertices.positions(triangle), context);
     } else if !beyond_a_plane {

@@ -101,23 +101,37 @@ impl Real for f32x8 {
 
     #[inline]
     fn min(self, other: Self) -> Self {
-        self.fast_min(other)
+        // Others disagree on NaN and on zeros of two signs; the instruction of x86 is this very comparison.
+        if cfg!(target_feature = "sse") {
+            self.fast_min(other)
+        } else {
+            self.cmp_lt(other).blend(self, other)
+        }
     }
 
     #[inline]
     fn max(self, other: Self) -> Self {
-        self.fast_max(other)
+        if cfg!(target_feature = "sse") {
+            self.fast_max(other)
+        } else {
+            self.cmp_gt(other).blend(self, other)
+        }
     }
 
     #[inline]
     fn floor(self) -> Self {
-        if cfg!(any(target_feature = "sse4.1", not(target_arch = "x86_64"))) {
+        const HAS_INSTRUCTION: bool = cfg!(any(
+            target_feature = "sse4.1",
+            target_feature = "simd128",
+            all(target_feature = "neon", target_arch = "aarch64"),
+        ));
+        if HAS_INSTRUCTION {
             return Self::floor(self);
         }
-        // Old instruction sets cannot round down: cut off, and take one away where that went up. From 2²³ on there are
-        // no fractions, and whole numbers need not fit.
+        // Old instruction sets cannot round down: cut off, and take one away where that went up. Negative zero, which has
+        // lost its sign, gets it back. From 2²³ on there are no fractions, and whole numbers need not fit.
         let cut = self.fast_trunc_int().round_float();
-        let floor = cut - (cut.cmp_gt(self) & Self::ONE);
+        let floor = (cut - (cut.cmp_gt(self) & Self::ONE)) | (self & Self::splat(-0.0));
         self.abs().cmp_lt(Self::splat(8_388_608.0)).blend(floor, self)
     }
 
@@ -189,8 +203,10 @@ impl Real for f32x8 {
 #[inline]
 pub(crate) fn packed(color: [Lanes; 3]) -> i32x8 {
     let (zero, half, most) = (f32x8::splat(0.0), f32x8::splat(0.5), f32x8::splat(255.0));
-    let [red, green, blue] =
-        color.map(|channel| (channel + half).fast_max(zero).fast_min(most).fast_trunc_int());
+    let [red, green, blue] = color.map(|channel| {
+        let limited = Real::min(Real::max(channel + half, zero), most);
+        limited.fast_trunc_int()
+    });
     (red << 16) | (green << 8) | blue
 }
 
@@ -200,13 +216,23 @@ mod tests {
     use crate::merge::Rounding;
 
     const ODD: [f32; 8] = [-0.5, 0.0, 2.999_999, -3.0, 8_388_607.5, 1e30, -7.25, 254.5];
+    const OTHER: [f32; 8] = [1.0, -2.0, 3.5, 0.25, -1e9, 1e-3, 7.0, 255.0];
+    const ZEROS: [f32; 8] = [-0.0, 0.0, -0.0, 0.0, f32::NAN, 1.0, f32::NAN, -1e-40];
+    const OTHER_ZEROS: [f32; 8] = [0.0, -0.0, -0.0, 0.0, -0.0, f32::NAN, f32::NAN, 1e-40];
 
     #[test]
     fn lanes_do_what_one_number_does() {
-        let other = [1.0, -2.0, 3.5, 0.25, -1e9, 1e-3, 7.0, 255.0];
-        let (a, b) = (Lanes::new(ODD), Lanes::new(other));
+        for (a, b) in [(ODD, OTHER), (ZEROS, OTHER_ZEROS), (OTHER_ZEROS, ZEROS)] {
+            lanes_do_what_each_does(a, b);
+        }
+    }
+
+    fn lanes_do_what_each_does(numbers: [f32; 8], others: [f32; 8]) {
+        let (a, b) = (Lanes::new(numbers), Lanes::new(others));
+        // There are many ways to write what is not a number.
+        let bits = |number: f32| if number.is_nan() { f32::NAN.to_bits() } else { number.to_bits() };
         let check = |lanes: Lanes, one: fn(f32, f32) -> f32| {
-            assert_eq!(lanes.to_array().map(f32::to_bits), from_fn(|i| one(ODD[i], other[i]).to_bits()));
+            assert_eq!(lanes.to_array().map(bits), from_fn(|i| bits(one(numbers[i], others[i]))));
         };
         check(a + b, |a, b| a + b);
         check(a * b, |a, b| a * b);

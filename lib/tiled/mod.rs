@@ -98,7 +98,11 @@ impl Tiled {
 
     // ANCHOR: draw_mesh
     /// Draws a mesh into a target: all stages of the pipeline, and the load operation. The picture is that of
-    /// [`draw`](crate::draw) with [`Exact<f32>`](crate::exact::Exact).
+    /// [`draw`](crate::draw) with [`Exact<f32>`](crate::exact::Exact), to the last bit (but for what is not a number: there are
+    /// many ways to write it, and a stored depth may be another one of them).
+    ///
+    /// # Panics
+    /// If the planes of the target are not of the same size.
     pub fn draw_mesh<S: Shader<N>, const N: usize>(
         &self,
         mesh: &Mesh<S::Attributes>,
@@ -117,6 +121,7 @@ impl Tiled {
         state: &RenderState,
         target: &mut Target<f32>,
     ) {
+        target.assert_same_size();
         let picture = target.color.rect();
         // Two pictures at a time do not share working memory.
         let mut own = Front::default();

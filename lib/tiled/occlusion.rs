@@ -10,6 +10,8 @@ use crate::shader::Shader;
 
 /// No depth is behind this one.
 pub(super) const NO_OCCLUDER: f64 = f64::INFINITY;
+/// Of triangles with larger depths nothing is said.
+const FARTHEST: f64 = 1e27;
 
 // ANCHOR: occlusion
 /// The depth behind which nothing can be seen in a tile: that of the nearest large triangle that covers all of it, where
@@ -69,8 +71,13 @@ pub(super) fn depth_range(coverage: &Coverage, triangle: Triangle<'_>, rect: Rec
         let [second, third] = coverage.weights::<f64>(coverage.edge_values(corner));
         first + to_second * second + to_third * third
     });
+    let most = first.abs() + to_second.abs() + to_third.abs();
+    // From pixel to pixel depths of a thin triangle change by up to 2³³ times as much: beyond single precision, perhaps.
+    if !(most < FARTHEST) {
+        return [f64::NEG_INFINITY, f64::INFINITY];
+    }
     // A pixel's depth takes some twenty roundings of 2⁻²⁴ each, on the way to the first of its row and from there.
-    let room = (first.abs() + to_second.abs() + to_third.abs()) * f64::from(f32::EPSILON) * 16.0;
+    let room = most * f64::from(f32::EPSILON) * 16.0;
     [depths.into_iter().fold(f64::MAX, f64::min) - room, depths.into_iter().fold(f64::MIN, f64::max) + room]
 }
 // ANCHOR_END: occlusion

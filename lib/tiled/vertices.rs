@@ -323,7 +323,7 @@ mod tests {
             let (positions, outside, ndc) = projection.project(&vertices);
             for i in 0..AT_A_TIME {
                 let one = NdcVertex::<0>::from(vertices[i]);
-                let is_ready = clip[i].is_finite() && is_in_guard_band(&one);
+                let is_ready = clip[i].is_finite() && clip[i].w > 0.0 && is_in_guard_band(&one);
                 let position = projection.snapped_position(&one).filter(|_| is_ready);
                 prop_assert_eq!(outside[i] & NOT_REPRESENTABLE != 0, position.is_none());
                 if let Some(position) = position {

@@ -1,7 +1,8 @@
-//! What a scene depends on, for every variant: its size, and its knobs. One program, since each contains all chapters.
+//! What a scene depends on, for every variant: its size, its knobs, and its rasterizer. One program, since each contains all chapters.
 
 #[path = "../support/chapters.rs"]
 mod chapters;
 mod fingerprints;
 mod knobs;
+mod rasterizers;
 mod sizes;
