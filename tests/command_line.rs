@@ -378,6 +378,26 @@ fn a_list_of_one_variant_is_its_line() {
 }
 
 #[test]
+fn steps_that_do_not_fit_are_refused_with_a_size_that_does() {
+    let reason =
+        "'affine' has more steps than are kept (33554432 writes): 4096x4096 pixels would fit (--size)";
+    refused("steps_too_large", &["affine", "--steps", "--size", "8192x8192"], 2, reason);
+}
+
+/// What is counted needs no memory for each time.
+#[cfg(target_os = "linux")]
+#[test]
+fn overdraw_needs_little_more_memory_than_the_picture() {
+    let folder = folder("memory");
+    let program = env!("CARGO_BIN_EXE_ch05_perspective_correct");
+    let line = format!("ulimit -v 200000; exec {program} floor --overdraw --size 1280x960 --out a.png");
+    let mut command = Command::new("sh");
+    command.args(["-c", &line]).env("RAYON_NUM_THREADS", "1").current_dir(&folder);
+    let output = command.output().expect("it starts");
+    assert!(output.status.success(), "{}", text(&output.stderr));
+}
+
+#[test]
 fn what_cannot_be_written_is_an_error_and_leaves_nothing() {
     let folder = folder("unwritable");
     std::fs::write(folder.join("file"), "in the way").expect("written");

@@ -20,7 +20,7 @@ use super::wrap::{WIDEST, terminal_width, wrap_columns};
 use crate::figure::picture::{Zoom, difference, side_by_side, zoomed};
 use crate::figure::{Animation, Chapter, DrawOptions, Knob, Scene, Variant};
 use crate::framebuffer::Framebuffer;
-use crate::inspect::{Steps, history, with_legend};
+use crate::inspect::{Steps, history, overdraw, with_legend};
 use crate::rect::{Pixel, Rect};
 
 impl Chapter {
@@ -232,14 +232,16 @@ fn inspect_pixel(
 /// Draws how a picture came about: step by step, or how often each pixel was written.
 fn draw_recorded(variant: &Variant, request: &Request, destination: &Destination) -> Result<(), Failure> {
     let scene = scene_of(variant, request, &load(request)?)?;
-    let steps = Steps::new(variant, &scene.options(None));
     if request.steps {
         let draw = |number| enlarged(steps.frame(number), request.zoom);
         let name = format!("{}-steps", name_of(&scene, request));
         return destination.write_animation(&name, |format| encode(format, steps.animation(), &draw));
     }
-    let (heat, legend) = steps.overdraw();
+    let (heat, legend) = overdraw(variant, &scene.options(None));
     note(&legend.join("\n"));
+        let steps = Steps::new(variant, &scene.options(None));
+        let steps =
+            steps.map_err(|error| Failure::Usage(format!("'{}' has {error} (--size)", variant.name)))?;
     let name = format!("{}-overdraw", name_of(&scene, request));
     destination.write(&name, &with_legend(enlarged(heat, request.zoom)))?;
     tell_part(request, scene.size);
