@@ -378,6 +378,26 @@ fn a_list_of_one_variant_is_its_line() {
 }
 
 #[test]
+fn where_no_thread_can_be_started_one_draws_alone() {
+    let folder = folder("no_threads");
+    let run = |program: &str, arguments: &[&str]| {
+        let mut command = Command::new(program);
+        command.args(arguments).args(["--size", "64x48", "--out", "x/"]).current_dir(&folder);
+        // No machine has room for such a stack.
+        command.env("RUST_MIN_STACK", (1_u64 << 60).to_string()).output().expect("it starts")
+    };
+    for (program, arguments) in [
+        (env!("CARGO_BIN_EXE_ch10_matrices_lighting"), &["turntable", "--rasterizer", "tiled"][..]),
+        (env!("CARGO_BIN_EXE_ch10_matrices_lighting"), &["--sweep", "elevation", "turntable"]),
+        (env!("CARGO_BIN_EXE_ch05_perspective_correct"), &["affine", "--steps"]),
+    ] {
+        let output = run(program, arguments);
+        assert!(output.status.success() && output.stderr.is_empty(), "{}", text(&output.stderr));
+    }
+    assert_eq!(files(&folder.join("x")).len(), 3);
+}
+
+#[test]
 fn steps_that_do_not_fit_are_refused_with_a_size_that_does() {
     let reason =
         "'affine' has more steps than are kept (33554432 writes): 4096x4096 pixels would fit (--size)";

@@ -14,6 +14,7 @@ use super::options::{knob_list, list};
 use super::output::{Destination, note, say};
 use super::scenes::{check_inside, load, name_of, pair_of, scene_of, sweepable, unseen};
 use super::show::Screen;
+use super::threads;
 #[cfg(feature = "window")]
 use super::window::open_window;
 use super::wrap::{WIDEST, terminal_width, wrap_columns};
@@ -76,6 +77,7 @@ fn run(chapter: &Chapter, request: &Request) -> Result<(), Failure> {
     let destination = match request.show {
         Some(asked) => Destination::Screen(Screen::find(asked)?),
         None => Destination::new(request.out.clone().unwrap_or_else(default))?,
+    threads::start();
     };
     if request.all {
         if destination.is_single() && chapter.variants.len() > 1 {
