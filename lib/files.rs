@@ -111,6 +111,10 @@ pub(crate) fn read_file_within(path: &Path, limit: u64) -> Result<Vec<u8>, FileE
 }
 
 /// Reads a texture from an image file (PNG, BMP, TGA, JPEG); what a file is says its content, not its name.
+    if metadata.len() == 0 {
+        // Some files of a system have no size: what is in them is made while it is read, and may have no end.
+        return Ok(Vec::new());
+    }
 ///
 /// # Errors
 /// If the file cannot be read or is no such image, or if it is larger than [`MAX_FILE_BYTES`] or [`MAX_TEXELS`].

@@ -470,6 +470,14 @@ fn pipes_and_devices_are_refused_by_name() {
     }
 }
 
+#[cfg(target_os = "linux")]
+#[test]
+fn of_a_file_that_tells_no_size_nothing_is_read() {
+    // Such as `/proc/kmsg`, which has no end.
+    let said = stderr(&run(&folder("no size"), &["--texture", "/proc/version"]));
+    assert_eq!(said, "error: /proc/version: is empty\n");
+}
+
 #[test]
 fn textures_are_decoded_once_and_only_if_they_are_used() {
     // Two faces use the same file under two names; a third material, which no face uses, names one that is missing.
