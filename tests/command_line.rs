@@ -377,6 +377,41 @@ fn a_list_of_one_variant_is_its_line() {
     assert!(text(&run_in(&folder("list"), &["--list"]).stdout).contains(list[8..].trim()), "{list}");
 }
 
+#[cfg(unix)]
+#[test]
+fn a_path_is_printed_as_it_is_and_told_so_that_it_can_be_read() {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt;
+
+    let folder = folder("no_text");
+    let run = |path: &[u8], more: &[&str]| {
+        let program = env!("CARGO_BIN_EXE_ch05_perspective_correct");
+        let path = OsStr::from_bytes(path);
+        let mut command = Command::new(program);
+        command.args(["--size", "16x12", "--out"]).arg(path).args(more).current_dir(&folder);
+        command.output().expect("it starts")
+    };
+    // A program that reads the path finds the file.
+    let output = run(b"caf\xe9.png", &[]);
+    assert_eq!(output.stdout, b"caf\xe9.png\n");
+    assert!(folder.join(OsStr::from_bytes(b"caf\xe9.png")).is_file());
+    for (path, more, told) in [
+        (b"caf\xe9.png/a.png".as_slice(), &[][..], "error: cannot write caf\\xe9.png: "),
+        (b"caf\x1b[31m.xyz", &[], "error: cannot write caf\\u{1b}[31m.xyz: '.xyz' is no picture format"),
+        (b"a.\xe9", &[], "error: cannot write a.\\xe9: "),
+        (b"caf\xe9.gif", &[], "error: caf\\xe9.gif is for an animation"),
+        (b"caf\xe9.bmp", &["--steps"], "error: caf\\xe9.bmp: an animation is"),
+        (b"a.png", &["no\x1b[31m"], "error: ch05_perspective_correct has no variant 'no\\u{1b}[31m'"),
+        (b"a.png", &["--zoom", "\x1b[31m"], "error: invalid value '\\u{1b}[31m' for '--zoom"),
+    ] {
+        let output = run(path, more);
+        let stderr = text(&output.stderr);
+        assert!(!output.status.success() && stderr.starts_with(told), "{stderr:?}");
+        assert!(stderr.chars().all(|c| c == '\n' || !c.is_control()), "{stderr:?}");
+    }
+    assert_eq!(files(&folder).len(), 1);
+}
+
 #[test]
 fn where_no_thread_can_be_started_one_draws_alone() {
     let folder = folder("no_threads");

@@ -478,6 +478,28 @@ fn of_a_file_that_tells_no_size_nothing_is_read() {
     assert_eq!(said, "error: /proc/version: is empty\n");
 }
 
+#[cfg(unix)]
+#[test]
+fn a_path_that_is_no_text_can_be_recognized() {
+    use std::os::unix::ffi::OsStrExt;
+
+    let folder = folder("no text");
+    let path = std::ffi::OsStr::from_bytes(b"caf\xe9\x1b[31m.obj");
+    let told = || {
+        let program = env!("CARGO_BIN_EXE_ch10_matrices_lighting");
+        let mut command = Command::new(program);
+        command.args(["lit", "--size", "64x48", "--out", "picture.png", "--model"]).arg(path);
+        stderr(&command.current_dir(&folder).output().expect("it starts"))
+    };
+    let shown = "caf\\xe9\\u{1b}[31m.obj";
+    let missing = told();
+    assert!(missing.starts_with(&format!("error: {shown}: ")) && missing.lines().count() == 1, "{missing}");
+    let text = format!("mtllib nowhere.mtl\n{SQUARE}f 1 2 3\n");
+    std::fs::write(folder.join(path), text).expect("written");
+    let warned = told();
+    assert!(warned.starts_with(&format!("warning: {shown}: line 1: ")), "{warned}");
+}
+
 #[test]
 fn textures_are_decoded_once_and_only_if_they_are_used() {
     // Two faces use the same file under two names; a third material, which no face uses, names one that is missing.

@@ -42,7 +42,11 @@ fn main(chapter: &Chapter) -> ExitCode {
         }
         Err(error) => {
             // The version goes to standard output, errors to standard error; a closed pipe is not worth a word.
-            let _ = error.print();
+            if error.use_stderr() {
+                note(error.render().ansi().to_string().trim_end());
+            } else {
+                let _ = error.print();
+            }
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
         }
     };
@@ -73,11 +77,11 @@ fn run(chapter: &Chapter, request: &Request) -> Result<(), Failure> {
         let wrapped = terminal_width().map(|width| wrap_columns(&list, width));
         return say(wrapped.as_deref().unwrap_or(&list).trim_end());
     }
+    threads::start();
     let default = || PathBuf::from("out").join(chapter.name);
     let destination = match request.show {
         Some(asked) => Destination::Screen(Screen::find(asked)?),
         None => Destination::new(request.out.clone().unwrap_or_else(default))?,
-    threads::start();
     };
     if request.all {
         if destination.is_single() && chapter.variants.len() > 1 {
@@ -235,15 +239,15 @@ fn inspect_pixel(
 fn draw_recorded(variant: &Variant, request: &Request, destination: &Destination) -> Result<(), Failure> {
     let scene = scene_of(variant, request, &load(request)?)?;
     if request.steps {
+        let steps = Steps::new(variant, &scene.options(None));
+        let steps =
+            steps.map_err(|error| Failure::Usage(format!("'{}' has {error} (--size)", variant.name)))?;
         let draw = |number| enlarged(steps.frame(number), request.zoom);
         let name = format!("{}-steps", name_of(&scene, request));
         return destination.write_animation(&name, |format| encode(format, steps.animation(), &draw));
     }
     let (heat, legend) = overdraw(variant, &scene.options(None));
     note(&legend.join("\n"));
-        let steps = Steps::new(variant, &scene.options(None));
-        let steps =
-            steps.map_err(|error| Failure::Usage(format!("'{}' has {error} (--size)", variant.name)))?;
     let name = format!("{}-overdraw", name_of(&scene, request));
     destination.write(&name, &with_legend(enlarged(heat, request.zoom)))?;
     tell_part(request, scene.size);
