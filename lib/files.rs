@@ -53,7 +53,7 @@ impl FileError {
 
 impl fmt::Display for FileError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&shown(&format!("{}: {}", self.path.display(), self.cause)))
+        write!(f, "{}: {}", shown_path(&self.path), shown(&self.cause))
     }
 }
 
@@ -81,6 +81,16 @@ pub(crate) fn shown(text: &str) -> String {
     safe
 }
 
+/// A path as a terminal may show it. Bytes that are no text are escaped, so that the name can be recognized.
+pub(crate) fn shown_path(path: &Path) -> String {
+    let mut safe = String::new();
+    for chunk in path.as_os_str().as_encoded_bytes().utf8_chunks() {
+        safe += &shown(chunk.valid());
+        safe.extend(chunk.invalid().iter().map(|byte| format!("\\x{byte:02x}")));
+    }
+    safe
+}
+
 /// The bytes of a file: the one door for all that is read. A folder, a pipe and a device are refused, and so is a file
 /// larger than [`MAX_FILE_BYTES`], before it is read.
 pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>, FileError> {
@@ -102,6 +112,10 @@ pub(crate) fn read_file_within(path: &Path, limit: u64) -> Result<Vec<u8>, FileE
     };
     if metadata.len() > limit {
         return Err(too_large(metadata.len().to_string()));
+    }
+    if metadata.len() == 0 {
+        // Some files of a system have no size: what is in them is made while it is read, and may have no end.
+        return Ok(Vec::new());
     }
     let mut bytes = Vec::with_capacity(metadata.len() as usize);
     // It may grow while it is read.
@@ -128,7 +142,7 @@ pub(crate) fn load_texture_within(path: &Path, max_texels: u64) -> Result<(Textu
     if let Ok(named) = ImageFormat::from_path(path)
         && named != format
     {
-        warnings.push(shown(&format!("{}: is a {format:?} file, whatever its name says", path.display())));
+        warnings.push(format!("{}: is a {format:?} file, whatever its name says", shown_path(path)));
     }
     Ok((texture, warnings))
 }

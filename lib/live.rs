@@ -16,7 +16,7 @@ use crate::figure::picture::{Zoom, difference, fill_blocks};
 use crate::figure::{Animation, Chapter, Fit, Given, Knob, Mistake, RasterizerChoice, Scene, Value, Variant};
 use crate::files::FileError;
 use crate::framebuffer::Framebuffer;
-use crate::inspect::{History, Steps, history};
+use crate::inspect::{History, history, overdraw};
 use crate::rect::{Pixel, Rect};
 
 /// What somebody does. Pixels are those of the picture that is shown, y up.
@@ -427,7 +427,7 @@ impl<'a> Live<'a> {
     pub fn whole_picture(&self) -> Framebuffer {
         match self.view {
             View::Itself => self.scene.draw(),
-            View::Overdraw => Steps::new(self.scene.variant, &self.scene.options(None)).overdraw().0,
+            View::Overdraw => overdraw(self.scene.variant, &self.scene.options(None)).0,
             View::Remedy => self.remedied().map_or_else(|| self.scene.draw(), |remedied| remedied.draw()),
             View::Difference => {
                 let this = self.scene.draw();

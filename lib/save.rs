@@ -9,8 +9,9 @@
 //! # Ok::<(), rasterbook::files::FileError>(())
 //! ```
 
-use std::fs;
-use std::io::Cursor;
+use std::fs::{self, OpenOptions};
+use std::hash::{BuildHasher, RandomState};
+use std::io::{Cursor, Write};
 use std::path::Path;
 
 use image::{ImageError, ImageFormat, RgbImage};
@@ -50,14 +51,22 @@ pub(crate) fn encode(picture: &Framebuffer, format: ImageFormat) -> Result<Vec<u
 }
 
 /// Writes a whole file or nothing: under another name first, which then takes the place of the old file.
+///
+/// Nobody foresees that name, and a file or a link that has it is left alone, as with the crate `tempfile`; that one and
+/// the six that it brings would take a tenth of the first build. Neither catches a signal that ends the program; all bytes
+/// are there before the file is made, so only one within these milliseconds leaves it behind.
 pub(crate) fn replace(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     fs::create_dir_all(folder).map_err(|error| FileError::from_source(folder, error))?;
-    let part = folder.join(format!(".rasterbook.{}.part", std::process::id()));
-    let written = fs::write(&part, bytes).and_then(|()| fs::rename(&part, path));
-    written.map_err(|error| {
+    // The state of a hash table is random.
+    let part = folder.join(format!(".rasterbook.{:016x}.part", RandomState::new().hash_one(path)));
+    let failure = |error| FileError::from_source(path, error);
+    let mut file = OpenOptions::new().write(true).create_new(true).open(&part).map_err(failure)?;
+    let written = file.write_all(bytes);
+    drop(file);
+    written.and_then(|()| fs::rename(&part, path)).map_err(|error| {
         let _ = fs::remove_file(&part);
-        FileError::from_source(path, error)
+        failure(error)
     })
 }
 

@@ -377,6 +377,81 @@ fn a_list_of_one_variant_is_its_line() {
     assert!(text(&run_in(&folder("list"), &["--list"]).stdout).contains(list[8..].trim()), "{list}");
 }
 
+#[cfg(unix)]
+#[test]
+fn a_path_is_printed_as_it_is_and_told_so_that_it_can_be_read() {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt;
+
+    let folder = folder("no_text");
+    let run = |path: &[u8], more: &[&str]| {
+        let program = env!("CARGO_BIN_EXE_ch05_perspective_correct");
+        let path = OsStr::from_bytes(path);
+        let mut command = Command::new(program);
+        command.args(["--size", "16x12", "--out"]).arg(path).args(more).current_dir(&folder);
+        command.output().expect("it starts")
+    };
+    // A program that reads the path finds the file.
+    let output = run(b"caf\xe9.png", &[]);
+    assert_eq!(output.stdout, b"caf\xe9.png\n");
+    assert!(folder.join(OsStr::from_bytes(b"caf\xe9.png")).is_file());
+    for (path, more, told) in [
+        (b"caf\xe9.png/a.png".as_slice(), &[][..], "error: cannot write caf\\xe9.png: "),
+        (b"caf\x1b[31m.xyz", &[], "error: cannot write caf\\u{1b}[31m.xyz: '.xyz' is no picture format"),
+        (b"a.\xe9", &[], "error: cannot write a.\\xe9: "),
+        (b"caf\xe9.gif", &[], "error: caf\\xe9.gif is for an animation"),
+        (b"caf\xe9.bmp", &["--steps"], "error: caf\\xe9.bmp: an animation is"),
+        (b"a.png", &["no\x1b[31m"], "error: ch05_perspective_correct has no variant 'no\\u{1b}[31m'"),
+        (b"a.png", &["--zoom", "\x1b[31m"], "error: invalid value '\\u{1b}[31m' for '--zoom"),
+    ] {
+        let output = run(path, more);
+        let stderr = text(&output.stderr);
+        assert!(!output.status.success() && stderr.starts_with(told), "{stderr:?}");
+        assert!(stderr.chars().all(|c| c == '\n' || !c.is_control()), "{stderr:?}");
+    }
+    assert_eq!(files(&folder).len(), 1);
+}
+
+#[test]
+fn where_no_thread_can_be_started_one_draws_alone() {
+    let folder = folder("no_threads");
+    let run = |program: &str, arguments: &[&str]| {
+        let mut command = Command::new(program);
+        command.args(arguments).args(["--size", "64x48", "--out", "x/"]).current_dir(&folder);
+        // No machine has room for such a stack.
+        command.env("RUST_MIN_STACK", (1_u64 << 60).to_string()).output().expect("it starts")
+    };
+    for (program, arguments) in [
+        (env!("CARGO_BIN_EXE_ch10_matrices_lighting"), &["turntable", "--rasterizer", "tiled"][..]),
+        (env!("CARGO_BIN_EXE_ch10_matrices_lighting"), &["--sweep", "elevation", "turntable"]),
+        (env!("CARGO_BIN_EXE_ch05_perspective_correct"), &["affine", "--steps"]),
+    ] {
+        let output = run(program, arguments);
+        assert!(output.status.success() && output.stderr.is_empty(), "{}", text(&output.stderr));
+    }
+    assert_eq!(files(&folder.join("x")).len(), 3);
+}
+
+#[test]
+fn steps_that_do_not_fit_are_refused_with_a_size_that_does() {
+    let reason =
+        "'affine' has more steps than are kept (33554432 writes): 4096x4096 pixels would fit (--size)";
+    refused("steps_too_large", &["affine", "--steps", "--size", "8192x8192"], 2, reason);
+}
+
+/// What is counted needs no memory for each time.
+#[cfg(target_os = "linux")]
+#[test]
+fn overdraw_needs_little_more_memory_than_the_picture() {
+    let folder = folder("memory");
+    let program = env!("CARGO_BIN_EXE_ch05_perspective_correct");
+    let line = format!("ulimit -v 200000; exec {program} floor --overdraw --size 1280x960 --out a.png");
+    let mut command = Command::new("sh");
+    command.args(["-c", &line]).env("RAYON_NUM_THREADS", "1").current_dir(&folder);
+    let output = command.output().expect("it starts");
+    assert!(output.status.success(), "{}", text(&output.stderr));
+}
+
 #[test]
 fn what_cannot_be_written_is_an_error_and_leaves_nothing() {
     let folder = folder("unwritable");

@@ -174,6 +174,27 @@ fn every_format_and_a_wrong_name() {
     assert!(told.starts_with("warning: a.png: is a Bmp file"), "{told}");
 }
 
+#[cfg(unix)]
+#[test]
+fn no_link_is_followed_on_the_way_to_a_picture() {
+    let folder = folder("links");
+    std::fs::write(folder.join("victim"), "precious").expect("written");
+    // The name that was once taken for what is not yet whole; the program has the number of the shell that becomes it.
+    let program = env!("CARGO_BIN_EXE_ch10_matrices_lighting");
+    let line = format!("ln -s victim .rasterbook.$$.part; exec {program} lit --size 64x48 --out a.png");
+    let output = Command::new("sh").args(["-c", &line]).current_dir(&folder).output().expect("a shell");
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert_eq!(std::fs::read_to_string(folder.join("victim")).expect("there"), "precious");
+    let count = || std::fs::read_dir(&folder).expect("the folder").count();
+    assert_eq!(count(), 3, "the link, its target, a picture");
+    // What cannot take its place is gone again.
+    std::fs::create_dir(folder.join("b.png")).expect("made");
+    let picture = rasterbook::Framebuffer::new(2, 2);
+    let error = picture.save(folder.join("b.png")).expect_err("a folder is there");
+    assert!(error.to_string().contains("b.png: "), "{error}");
+    assert_eq!(count(), 4, "and a folder");
+}
+
 #[test]
 fn only_where_a_model_is_drawn() {
     let folder = folder("no_model");

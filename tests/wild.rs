@@ -426,12 +426,28 @@ fn what_is_too_large_is_refused_before_it_is_read() {
     refused(&["--texture", "a.obj"], "a.obj: has 3221225472 bytes");
     std::fs::remove_file(folder.join("a.obj")).expect("there");
 
-    // A file of 41 bytes that claims 8000×8000 pixels.
-    let mut claim = vec![0; 41];
-    claim[2] = 2;
-    claim[12..18].copy_from_slice(&[0x40, 0x1f, 0x40, 0x1f, 24, 0]);
-    write(&folder, &[("a.tga", &claim)]);
-    refused(&["--texture", "a.tga"], "a.tga: claims 8000×8000 pixels, which cannot be in 41 bytes");
+    // Headers that claim 8000×8000 pixels, and zeros. A decoder of photographs makes up what is missing.
+    let mut jpeg = photograph(None);
+    let frame = jpeg.windows(2).position(|mark| mark == b"\xff\xc0").expect("a frame");
+    jpeg[frame + 5..frame + 9].copy_from_slice(&[0x1f, 0x40, 0x1f, 0x40]);
+    let tga = |kind| [[0, 0, kind].as_slice(), &[0; 9], &[0x40, 0x1f, 0x40, 0x1f, 24, 0]].concat();
+    let bmp =
+        [b"BM\0\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0\x40\x1f\0\0\x40\x1f\0\0\x01\0\x18\0".as_slice(), &[0; 24]];
+    let png = b"\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR\0\0\x1f\x40\0\0\x1f\x40\x08\x02\0\0\0\x89\x93\x3a\xa3\0\0\x1b\0IDAT";
+    let headers: [(&str, Vec<u8>, usize); 6] = [
+        ("a.tga", tga(2), 41),
+        ("runs.tga", tga(10), 900_000),
+        ("a.bmp", bmp.concat(), 7_900_000),
+        ("a.ppm", b"P6 8000 8000 255\n".to_vec(), 7_900_000),
+        ("a.jpg", jpeg, 120_000),
+        ("a.png", png.to_vec(), 7_000),
+    ];
+    for (name, mut bytes, length) in headers {
+        bytes.resize(length, 0);
+        write(&folder, &[(name, &bytes)]);
+        let claim = format!("{name}: claims 8000×8000 pixels, which cannot be in {length} bytes");
+        refused(&["--texture", name], &claim);
+    }
 }
 
 #[cfg(unix)]
@@ -452,6 +468,36 @@ fn pipes_and_devices_are_refused_by_name() {
         let said = stderr(&run(&folder, &["--model", "a.obj"]));
         assert!(said.contains(&format!("{path}: is no regular file")), "{said}");
     }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn of_a_file_that_tells_no_size_nothing_is_read() {
+    // Such as `/proc/kmsg`, which has no end.
+    let said = stderr(&run(&folder("no size"), &["--texture", "/proc/version"]));
+    assert_eq!(said, "error: /proc/version: is empty\n");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_path_that_is_no_text_can_be_recognized() {
+    use std::os::unix::ffi::OsStrExt;
+
+    let folder = folder("no text");
+    let path = std::ffi::OsStr::from_bytes(b"caf\xe9\x1b[31m.obj");
+    let told = || {
+        let program = env!("CARGO_BIN_EXE_ch10_matrices_lighting");
+        let mut command = Command::new(program);
+        command.args(["lit", "--size", "64x48", "--out", "picture.png", "--model"]).arg(path);
+        stderr(&command.current_dir(&folder).output().expect("it starts"))
+    };
+    let shown = "caf\\xe9\\u{1b}[31m.obj";
+    let missing = told();
+    assert!(missing.starts_with(&format!("error: {shown}: ")) && missing.lines().count() == 1, "{missing}");
+    let text = format!("mtllib nowhere.mtl\n{SQUARE}f 1 2 3\n");
+    std::fs::write(folder.join(path), text).expect("written");
+    let warned = told();
+    assert!(warned.starts_with(&format!("warning: {shown}: line 1: ")), "{warned}");
 }
 
 #[test]

@@ -4,7 +4,9 @@ use std::io::Cursor;
 use std::path::Path;
 
 use image::metadata::Orientation;
-use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, Rgb, Rgba};
+use image::{
+    DynamicImage, ImageBuffer, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, Pixel, Rgba,
+};
 
 use super::orientation::{exif_of_png, of_exif};
 use super::{FileError, MAX_TEXELS};
@@ -12,9 +14,24 @@ use crate::color::Color;
 use crate::framebuffer::Framebuffer;
 use crate::texture::Texture;
 
-/// The most pixels that a byte of an image file can stand for: a PNG file of one bit a pixel, packed as far as its
-/// compression can. A header that claims more is wrong.
-const MAX_PIXELS_A_BYTE: u64 = 8 * 1032;
+/// The most pixels that a byte of an image file can stand for. A header that claims more is wrong.
+fn max_pixels_a_byte(bytes: &[u8], format: ImageFormat) -> u64 {
+    match format {
+        // A run of 128 pixels in two bytes.
+        ImageFormat::Tga => 64,
+        // A bit for eight times eight pixels.
+        ImageFormat::Jpeg => 8 * 64,
+        ImageFormat::Pnm => 8,
+        ImageFormat::Bmp if !is_run_length(bytes) => 8,
+        // Eight pixels a byte, and 1032 such bytes packed into one; with runs, BMP files leave out what is background.
+        _ => 8 * 1032,
+    }
+}
+
+/// Whether the pixels of a BMP file are runs: how they are compressed is told by four bytes.
+fn is_run_length(bytes: &[u8]) -> bool {
+    matches!(bytes.get(30..34), Some([1 | 2, 0, 0, 0]))
+}
 
 /// Decodes an image of no more than `max_texels` pixels.
 pub(super) fn decode_within(
@@ -30,14 +47,22 @@ pub(super) fn decode_within(
         .ok()
         .filter(|format| READABLE.contains(format))
         .ok_or_else(|| FileError::new(path, "is no image that can be read here (PNG, BMP, TGA, JPEG)"))?;
-    let judge =
-        |size| check_size(size, bytes.len() as u64, max_texels).map_err(|cause| FileError::new(path, cause));
+    let most = (bytes.len() as u64).saturating_mul(max_pixels_a_byte(bytes, format));
+    let judge = |size| {
+        check_size(size, max_texels).map_err(|cause| FileError::new(path, cause))?;
+        let ((width, height), length) = (size, bytes.len());
+        if u64::from(width) * u64::from(height) > most {
+            let claim = format!("claims {width}×{height} pixels, which cannot be in {length} bytes");
+            return Err(FileError::new(path, claim));
+        }
+        Ok(())
+    };
     let image = match format {
         #[cfg(feature = "jpeg")]
         ImageFormat::Jpeg => super::jpeg::decode(bytes, path, judge),
         _ => decode(bytes, format, path, judge),
     };
-    Ok((texture_of(&image?), format))
+    Ok((texture_of(image?), format))
 }
 
 /// Decodes PNG, BMP, TGA and PNM files, if `judge` lets their size pass, and turns them as they say.
@@ -81,7 +106,7 @@ fn limits() -> Limits {
 }
 
 /// Judges the size that a header claims, before there is memory for it.
-fn check_size((width, height): (u32, u32), bytes: u64, max_texels: u64) -> Result<(), String> {
+fn check_size((width, height): (u32, u32), max_texels: u64) -> Result<(), String> {
     let pixels = u64::from(width) * u64::from(height);
     if pixels == 0 {
         return Err("has no pixels".to_owned());
@@ -100,9 +125,6 @@ fn check_size((width, height): (u32, u32), bytes: u64, max_texels: u64) -> Resul
         };
         return Err(format!("exceeds limits: {width}×{height} are {pixels} pixels; {limit}"));
     }
-    if pixels > bytes.saturating_mul(MAX_PIXELS_A_BYTE) {
-        return Err(format!("claims {width}×{height} pixels, which cannot be in {bytes} bytes"));
-    }
     Ok(())
 }
 
@@ -115,21 +137,28 @@ fn as_tga_says(image: DynamicImage, descriptor: u8) -> DynamicImage {
 
 /// An image, whose first row is on top, as a texture, whose first row is at the bottom. What is transparent shows white
 /// beneath it: the color of the material then tints it, so that the surface has that color there.
-fn texture_of(image: &DynamicImage) -> Texture {
+fn texture_of(image: DynamicImage) -> Texture {
     let (width, height) = (image.width(), image.height());
-    let texels = if image.color().has_alpha() {
-        let pixels = image.to_rgba8();
-        pixels
-            .rows()
-            .rev()
-            .flatten()
-            .map(|&Rgba([r, g, b, a])| Color::rgb(over_white(r, a), over_white(g, a), over_white(b, a)))
-            .collect()
-    } else {
-        let pixels = image.to_rgb8();
-        pixels.rows().rev().flatten().map(|&Rgb([r, g, b])| Color::rgb(r, g, b)).collect()
+    Texture::new(width, height, into_texels(image))
+}
+
+/// Texel by texel from what was decoded: a copy in between would be as large again.
+fn into_texels(image: DynamicImage) -> Vec<Color> {
+    match image {
+        DynamicImage::ImageLuma8(image) => texels(&image),
+        DynamicImage::ImageLumaA8(image) => texels(&image),
+        DynamicImage::ImageRgb8(image) => texels(&image),
+        DynamicImage::ImageRgba8(image) => texels(&image),
+        deeper => texels(&deeper.into_rgba8()),
+    }
+}
+
+fn texels<P: Pixel<Subpixel = u8>>(image: &ImageBuffer<P, Vec<u8>>) -> Vec<Color> {
+    let over_white = |pixel: &P| {
+        let Rgba([r, g, b, a]) = pixel.to_rgba();
+        Color::rgb(over_white(r, a), over_white(g, a), over_white(b, a))
     };
-    Texture::new(width, height, texels)
+    image.rows().rev().flatten().map(over_white).collect()
 }
 
 /// A channel over white, by its alpha, rounded to nearest.
@@ -141,6 +170,7 @@ fn over_white(channel: u8, alpha: u8) -> u8 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use image::{Rgb, RgbImage};
 
     #[test]
     fn the_lowest_row_of_an_image_file_is_the_first_of_a_texture() {
@@ -184,7 +214,7 @@ mod tests {
     fn transparent_texels_are_white() {
         let pixels = [[255, 0, 255, 0], [100, 0, 200, 255], [0, 0, 0, 51], [255, 0, 0, 128]];
         let image = image::RgbaImage::from_fn(4, 1, |x, _| Rgba(pixels[x as usize]));
-        let texture = texture_of(&image.into());
+        let texture = texture_of(image.into());
         let texels: Vec<_> = (0..4).map(|x| texture.texel(x, 0)).collect();
         assert_eq!(texels, [[255.0; 3], [100.0, 0.0, 200.0], [204.0; 3], [255.0, 127.0, 127.0]]);
     }

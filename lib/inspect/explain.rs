@@ -1,16 +1,17 @@
-//! The history of a pixel: what was recorded, with the numbers of each chapter's formula.
+//! The history of a pixel: what was reported, with the numbers of each chapter's formula.
 //!
 //! Nothing here draws. Of a primitive that reached the pixel, the stage is gone through once more with the same library
 //! functions, to find the numbers that it passed on the way.
 
+use std::sync::Arc;
+
+use super::event::{Event, Primitive, within};
 use super::formulas::{clip_fields, edge_fields, facing, fragment_fields, vertex_fields};
 use super::history::{Entry, Field, History, Value, field, table};
-use super::record::{Event, Primitive, Recording, within};
 use super::rows::{line_at, miss, rows_at};
 use crate::area::twice_signed_area;
 use crate::clip::Assembled;
 use crate::color::Color;
-use crate::figure::{DrawOptions, Variant};
 use crate::framebuffer::Framebuffer;
 use crate::observer::Enlargement;
 use crate::probe::Piece;
@@ -19,45 +20,109 @@ use crate::rect::{Pixel, Rect};
 /// An area on the screen.
 const PIXELS: &str = "area · 2, px²";
 
+/// A pixel has at most so many entries, and as many of what did not reach it.
+const MOST: usize = 10_000;
+
+/// Entries in their order, of very many the first ones and the last.
+#[derive(Debug, Default)]
+struct Entries {
+    told: Vec<Entry>,
+    untold: usize,
+}
+
+impl Entries {
+    fn push(&mut self, entry: Entry) {
+        if self.told.len() == MOST {
+            self.told.pop();
+            self.untold += 1;
+        }
+        self.told.push(entry);
+    }
+
+    /// All of them, and how many are left out.
+    fn finish(mut self) -> Vec<Entry> {
+        if self.untold > 0 {
+            let title = format!("{} more are left out here", self.untold);
+            self.told.insert(MOST - 1, Entry::new("untold", title));
+        }
+        self.told
+    }
+}
+
 /// What was found out about a pixel.
 #[derive(Debug, Default)]
 struct Findings {
-    entries: Vec<Entry>,
-    others: Vec<Entry>,
+    entries: Entries,
+    others: Entries,
     /// The color that it was given last.
     color: Color,
 }
 
-/// The history of a pixel of a variant's picture.
-#[must_use]
-pub fn history(program: &'static str, variant: &Variant, options: &DrawOptions<'_>, pixel: Pixel) -> History {
-    let Recording { events, picture, frame } = Recording::new(variant, options, Some(pixel));
-    let knobs = options.knobs.changed();
-    History { program, variant: variant.name, frame, knobs, ..History::of(&events, &picture, pixel) }
+/// Numbers in rising order as text: 1–3, 7, 9–12.
+fn ranges(numbers: &[usize]) -> String {
+    let runs = numbers.chunk_by(|a, b| a + 1 == *b).map(|run| match run {
+        [first, .., last] => format!("{first}–{last}"),
+        [single] => single.to_string(),
+        [] => String::new(),
+    });
+    runs.collect::<Vec<_>>().join(", ")
 }
 
-/// The histories of several pixels; the picture is drawn once.
-pub fn histories(
-    program: &'static str,
-    variant: &Variant,
-    options: &DrawOptions<'_>,
-    pixels: impl IntoIterator<Item = Pixel>,
-) -> Vec<History> {
-    let Recording { events, picture, frame } = Recording::new(variant, options, None);
-    let history = |pixel| History {
-        program,
-        variant: variant.name,
-        frame,
-        knobs: options.knobs.changed(),
-        ..History::of(&events, &picture, pixel)
-    };
-    pixels.into_iter().map(history).collect()
+/// Explains what happens at a pixel, event by event: none is kept.
+#[derive(Debug)]
+pub(super) struct Explainer {
+    pixel: Pixel,
+    picture: Rect,
+    /// How the picture shows the current screen, if it is not the picture itself.
+    enlargement: Option<Enlargement>,
+    /// Of triangles and lines, counted from 1.
+    number: usize,
+    assembled: Option<Arc<Assembled>>,
+    piece: Option<Arc<Piece>>,
+    pieces: usize,
+    primitive: Option<Arc<Primitive>>,
+    /// Whether the primitive has reached the pixel, and has an entry.
+    is_open: bool,
+    hits: usize,
+    is_hit_complete: bool,
+    /// Whether the last entry is one of notes.
+    is_noting: bool,
+    /// Numbers of triangles that never reached the screen.
+    culled: Vec<usize>,
+    clipped_away: Vec<usize>,
+    found: Findings,
 }
 
-impl History {
-    /// What happened at a pixel on the way to a picture, from what was recorded.
-    pub(super) fn of(events: &[Event], picture: &Framebuffer, pixel: Pixel) -> Self {
-        let Findings { mut entries, others, color: last_color } = explain(events, pixel, picture.rect());
+impl Explainer {
+    /// For a pixel of a picture of this size.
+    pub(super) fn new(pixel: Pixel, picture: Rect) -> Self {
+        Self {
+            pixel,
+            picture,
+            enlargement: None,
+            number: 0,
+            assembled: None,
+            piece: None,
+            pieces: 0,
+            primitive: None,
+            is_open: false,
+            hits: 0,
+            is_hit_complete: true,
+            is_noting: false,
+            culled: Vec::new(),
+            clipped_away: Vec::new(),
+            found: Findings::default(),
+        }
+    }
+
+    /// The history, now that the picture is there.
+    pub(super) fn finish(mut self, picture: &Framebuffer) -> History {
+        self.end_triangle();
+        let left_out: Vec<Entry> = self.left_out().collect();
+        let Findings { entries, others, color: last_color } = self.found;
+        let (mut entries, mut others) = (entries.finish(), others.finish());
+        others.extend(left_out);
+        let pixel = self.pixel;
         let color = picture.get(pixel.0, pixel.1).unwrap_or_default();
         if !entries.iter().any(|entry| matches!(entry.kind, "line" | "half" | "triangle" | "painted")) {
             let title = "Nothing covers this pixel: it keeps the background".to_owned();
@@ -71,85 +136,22 @@ impl History {
         }
         let row = picture.height() as i32 - 1 - pixel.1;
         let (frame, knobs) = (None, Vec::new());
-        Self { program: "", variant: "", frame, knobs, pixel, row, entries, others, color, last_color }
+        History { program: "", variant: "", frame, knobs, pixel, row, entries, others, color, last_color }
     }
-}
 
-/// Explains what happened at a pixel of a picture of this size.
-fn explain(events: &[Event], pixel: Pixel, picture: Rect) -> Findings {
-    let mut explainer = Explainer {
-        pixel,
-        picture,
-        enlargement: None,
-        number: 0,
-        assembled: None,
-        piece: None,
-        pieces: 0,
-        primitive: None,
-        is_open: false,
-        hits: 0,
-        is_hit_complete: true,
-        is_noting: false,
-        culled: Vec::new(),
-        clipped_away: Vec::new(),
-        found: Findings::default(),
-    };
-    for event in events {
-        explainer.read(event);
-    }
-    explainer.end_triangle();
-    let left_out: Vec<Entry> = explainer.left_out().collect();
-    explainer.found.others.extend(left_out);
-    explainer.found
-}
-
-/// Numbers in rising order as text: 1–3, 7, 9–12.
-fn ranges(numbers: &[usize]) -> String {
-    let runs = numbers.chunk_by(|a, b| a + 1 == *b).map(|run| match run {
-        [first, .., last] => format!("{first}–{last}"),
-        [single] => single.to_string(),
-        [] => String::new(),
-    });
-    runs.collect::<Vec<_>>().join(", ")
-}
-
-/// Where we are in the events.
-struct Explainer<'a> {
-    pixel: Pixel,
-    picture: Rect,
-    /// How the picture shows the current screen, if it is not the picture itself.
-    enlargement: Option<Enlargement>,
-    /// Of triangles and lines, counted from 1.
-    number: usize,
-    assembled: Option<&'a Assembled>,
-    piece: Option<&'a Piece>,
-    pieces: usize,
-    primitive: Option<&'a Primitive>,
-    /// Whether the primitive has reached the pixel, and has an entry.
-    is_open: bool,
-    hits: usize,
-    is_hit_complete: bool,
-    /// Whether the last entry is one of notes.
-    is_noting: bool,
-    /// Numbers of triangles that never reached the screen.
-    culled: Vec<usize>,
-    clipped_away: Vec<usize>,
-    found: Findings,
-}
-
-impl<'a> Explainer<'a> {
-    fn read(&mut self, event: &'a Event) {
+    /// Takes in an event; those of a pixel only if it is the one that is [here](Self::here).
+    pub(super) fn read(&mut self, event: &Event) {
         match event {
             Event::Enlarged(enlargement) => self.enlarge(*enlargement),
             Event::Cleared(color) => self.clear(*color),
             Event::Assembled(triangle) => {
                 self.end_triangle();
                 self.number += 1;
-                (self.assembled, self.piece, self.pieces) = (Some(triangle), None, 0);
+                (self.assembled, self.piece, self.pieces) = (Some(triangle.clone()), None, 0);
             }
             Event::Piece(piece) => {
                 self.pieces += 1;
-                self.piece = Some(piece);
+                self.piece = Some(piece.clone());
             }
             Event::Unknown => {
                 let title = "A stage begins that is not known here".to_owned();
@@ -163,13 +165,13 @@ impl<'a> Explainer<'a> {
                     self.number += 1;
                 }
                 (self.primitive, self.is_open, self.hits, self.is_hit_complete) =
-                    (Some(primitive), false, 0, true);
+                    (Some(primitive.clone()), false, 0, true);
                 if self.piece.is_none() && self.assembled.is_some() {
                     self.pieces += 1;
                 }
             }
             Event::Done => self.done(),
-            Event::Noted(at, text) if *at == self.here() => {
+            Event::Noted(text) => {
                 if self.primitive.is_none() && !self.is_noting {
                     let title = "What the program says of this pixel".to_owned();
                     self.found.entries.push(Entry::new("note", title));
@@ -178,7 +180,7 @@ impl<'a> Explainer<'a> {
                 self.open(true);
                 self.add([field("note", "note", Value::Text(text.clone()))]);
             }
-            Event::Tested { at, depth, stored, passed } if *at == self.here() => {
+            Event::Tested { depth, stored, passed } => {
                 self.begin_hit();
                 self.add([
                     field("depth", "depth", Value::Number(*depth)),
@@ -187,18 +189,17 @@ impl<'a> Explainer<'a> {
                 ]);
                 self.is_hit_complete = !passed && self.piece.is_none();
             }
-            Event::Written(at, color) if *at == self.here() => {
+            Event::Written(color) => {
                 self.begin_hit();
                 self.found.color = *color;
                 self.add([field("written", "written", Value::Color(*color))]);
                 self.is_hit_complete = self.piece.is_none();
             }
-            Event::Fragment(at, fragment) if *at == self.here() => {
+            Event::Fragment(fragment) => {
                 self.begin_hit();
                 self.add(fragment_fields(fragment));
                 self.is_hit_complete = true;
             }
-            Event::Noted(..) | Event::Tested { .. } | Event::Written(..) | Event::Fragment(..) => {}
         }
     }
 
@@ -230,7 +231,7 @@ impl<'a> Explainer<'a> {
     }
 
     /// The pixel on the screen that is being drawn on.
-    fn here(&self) -> Pixel {
+    pub(super) fn here(&self) -> Pixel {
         within(self.pixel, self.enlargement)
     }
 
@@ -245,7 +246,8 @@ impl<'a> Explainer<'a> {
             self.found.entries.push(entry);
             self.is_open = true;
         }
-        if let Some(entry) = self.found.entries.last_mut().filter(|entry| is_new_hit || entry.hits.is_empty())
+        if let Some(entry) =
+            self.found.entries.told.last_mut().filter(|entry| is_new_hit || entry.hits.is_empty())
         {
             entry.hits.push(Vec::new());
         }
@@ -254,7 +256,7 @@ impl<'a> Explainer<'a> {
     /// Adds to the entry of the running primitive.
     fn add(&mut self, fields: impl IntoIterator<Item = Field>) {
         self.open(false);
-        if let Some(hit) = self.found.entries.last_mut().and_then(|entry| entry.hits.last_mut()) {
+        if let Some(hit) = self.found.entries.told.last_mut().and_then(|entry| entry.hits.last_mut()) {
             hit.extend(fields);
         }
     }
@@ -276,10 +278,10 @@ impl<'a> Explainer<'a> {
             self.add([field("", "again", Value::Text(again))]);
         }
         let (here, screen) = (self.here(), self.screen());
-        let fields = match self.primitive {
+        let fields = match self.primitive.as_deref() {
             None => Vec::new(),
             Some(Primitive::Line(line)) => line_at(line, here, screen),
-            Some(Primitive::Coverage(coverage)) => edge_fields(coverage, self.piece, here),
+            Some(Primitive::Coverage(coverage)) => edge_fields(coverage, self.piece.as_deref(), here),
             Some(primitive) => rows_at(primitive, here, screen).into_iter().nth(hit).unwrap_or_default(),
         };
         self.add(fields);
@@ -287,7 +289,7 @@ impl<'a> Explainer<'a> {
 
     /// The beginning of a primitive's entry.
     fn entry(&self) -> Entry {
-        let Some(primitive) = self.primitive else {
+        let Some(primitive) = self.primitive.as_deref() else {
             let title = "The program itself paints this pixel".to_owned();
             return Entry::new("painted", title);
         };
@@ -298,7 +300,7 @@ impl<'a> Explainer<'a> {
             Primitive::Triangle(_) | Primitive::Coverage(_) => ("triangle", format!("Triangle {number}")),
         };
         let mut fields = vec![field("number", "", Value::Whole(number as i64))];
-        if let Some(assembled) = self.assembled {
+        if let Some(assembled) = &self.assembled {
             fields.extend(vertex_fields(assembled));
             let (clipping, names) = clip_fields(assembled);
             fields.push(field("piece", "", Value::Whole(self.pieces as i64)));
@@ -310,7 +312,7 @@ impl<'a> Explainer<'a> {
                 fields.extend([clipping, field("", "piece", Value::Text(text))]);
             }
         }
-        if let Some(Piece { vertices, signed_area }) = self.piece {
+        if let Some(Piece { vertices, signed_area }) = self.piece.as_deref() {
             let rows = "ABC".chars().zip(vertices.iter());
             let rows = rows.map(|(name, v)| (name.to_string(), v.position.to_array().map(Some).to_vec()));
             fields.push(field("ndc", "NDC, and ω", table(&["x", "y", "z", "ω"], rows.collect())));
@@ -348,9 +350,9 @@ impl<'a> Explainer<'a> {
 
     fn done(&mut self) {
         if let Some(primitive) = self.primitive.take_if(|_| !self.is_open)
-            && let Some(reason) = miss(primitive, self.here(), self.screen())
+            && let Some(reason) = miss(&primitive, self.here(), self.screen())
         {
-            let name = if matches!(primitive, Primitive::Line(_)) { "line" } else { "triangle" };
+            let name = if matches!(*primitive, Primitive::Line(_)) { "line" } else { "triangle" };
             let piece = if self.pieces > 1 { format!(", piece {}", self.pieces) } else { String::new() };
             let title = format!("{name} {}{piece}: {reason}", self.number);
             self.found.others.push(Entry::new("missed", title));

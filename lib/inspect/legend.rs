@@ -1,6 +1,6 @@
 //! What the colors of an overdraw picture mean, in the picture.
 
-use super::steps::HEAT;
+use super::overdraw::HEAT;
 use crate::color::Color;
 use crate::figure::glyphs::{INK, LABEL_HEIGHT, PAPER, label, label_width};
 use crate::figure::picture::paste;

@@ -1,17 +1,20 @@
 //! Beside the renderer: how a picture came about. The history of a pixel, the steps, and how often each pixel was written.
 //!
-//! A figure is drawn while a recorder observes; what it has recorded is explained here. Nothing here draws a picture of
+//! A figure is drawn while somebody observes, who keeps what the answer needs and no more. Nothing here draws a picture of
 //! a chapter.
 
+mod event;
 mod explain;
 mod formulas;
 mod history;
 mod legend;
+mod overdraw;
 mod record;
 mod rows;
 mod steps;
 
-pub use explain::{histories, history};
 pub use history::History;
 pub use legend::{heat_legend, with_legend};
-pub use steps::Steps;
+pub use overdraw::overdraw;
+pub use record::{histories, history};
+pub use steps::{Steps, TooManySteps};

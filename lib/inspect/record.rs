@@ -1,173 +1,138 @@
-//! An observer that records: everything, or what concerns one pixel.
+//! An observer that explains some pixels while a picture is drawn: of all that happens, it keeps what concerns them.
 
 use std::any::Any;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use super::event::Event;
+use super::explain::Explainer;
+use super::history::History;
 use crate::clip::Assembled;
 use crate::color::Color;
-use crate::exact::edge::Coverage;
 use crate::figure::{DrawOptions, Variant};
-use crate::framebuffer::Framebuffer;
-use crate::interpolate::ScreenTriangle;
-use crate::line::Line;
 use crate::observer::{Enlargement, Observer};
 use crate::probe::{Fragment, Piece, Probe};
-use crate::rect::Pixel;
-use crate::scanline::HalfFill;
+use crate::rect::{Pixel, Rect};
 
-/// What covers pixels.
-#[derive(Clone, Debug)]
-pub(super) enum Primitive {
-    Line(Line),
-    Half(HalfFill),
-    Triangle(ScreenTriangle),
-    Coverage(Coverage),
+/// The history of a pixel of a variant's picture.
+#[must_use]
+pub fn history(program: &'static str, variant: &Variant, options: &DrawOptions<'_>, pixel: Pixel) -> History {
+    // One pixel, one history.
+    histories(program, variant, options, [pixel]).remove(0)
 }
 
-/// Something that was reported.
-#[derive(Clone, Debug)]
-pub(super) enum Event {
-    Written(Pixel, Color),
-    Cleared(Color),
-    Tested {
-        at: Pixel,
-        depth: f64,
-        stored: f64,
-        passed: bool,
-    },
-    Enlarged(Option<Enlargement>),
-    Begun(Primitive),
-    /// A stage began that is not known here.
-    Unknown,
-    Noted(Pixel, String),
-    Done,
-    Assembled(Assembled),
-    Piece(Piece),
-    Culled,
-    Fragment(Pixel, Fragment),
+/// The histories of several pixels; the picture is drawn once.
+pub fn histories(
+    program: &'static str,
+    variant: &Variant,
+    options: &DrawOptions<'_>,
+    pixels: impl IntoIterator<Item = Pixel>,
+) -> Vec<History> {
+    let screen = Rect::sized(options.size.0, options.size.1);
+    let explainers = pixels.into_iter().map(|pixel| Explainer::new(pixel, screen)).collect();
+    let recorder = Arc::new(Recorder(Mutex::new(explainers)));
+    let picture = variant.draw(&DrawOptions { observer: Some(recorder.clone()), ..options.clone() });
+    let explainers = std::mem::take(&mut *recorder.lock());
+    let history = |explainer: Explainer| History {
+        program,
+        variant: variant.name,
+        frame: variant.animation.map(|_| options.frame),
+        knobs: options.knobs.changed(),
+        ..explainer.finish(&picture)
+    };
+    explainers.into_iter().map(history).collect()
 }
 
-impl Event {
-    /// What a stage has begun with, by the stage's own type.
-    fn begun(what: &dyn Any) -> Self {
-        fn known<T: Clone + 'static>(what: &dyn Any, event: impl FnOnce(T) -> Event) -> Option<Event> {
-            what.downcast_ref::<T>().cloned().map(event)
-        }
-        known(what, |line| Self::Begun(Primitive::Line(line)))
-            .or_else(|| known(what, |half| Self::Begun(Primitive::Half(half))))
-            .or_else(|| known(what, |triangle| Self::Begun(Primitive::Triangle(triangle))))
-            .or_else(|| known(what, |coverage| Self::Begun(Primitive::Coverage(coverage))))
-            .or_else(|| known(what, Self::Assembled))
-            .unwrap_or(Self::Unknown)
-    }
-}
-
-/// A picture, and what was recorded while it was drawn.
-pub(super) struct Recording {
-    pub(super) events: Vec<Event>,
-    pub(super) picture: Framebuffer,
-    /// The frame, if it is one of an animation.
-    pub(super) frame: Option<u32>,
-}
-
-impl Recording {
-    /// Draws a variant and records everything, or of what happens to pixels only what concerns one.
-    pub(super) fn new(variant: &Variant, options: &DrawOptions<'_>, watched: Option<Pixel>) -> Self {
-        let recorder = Arc::new(Recorder::new(watched));
-        let picture = variant.draw(&DrawOptions { observer: Some(recorder.clone()), ..options.clone() });
-        let events = std::mem::take(&mut recorder.lock().events);
-        Self { events, picture, frame: variant.animation.map(|_| options.frame) }
-    }
-}
-
-/// An observer that records.
+/// Hands on what is reported, to each explainer what concerns its pixel.
 #[derive(Debug)]
-struct Recorder {
-    /// The only pixel whose writes, tests and fragments are recorded.
-    watched: Option<Pixel>,
-    record: Mutex<Record>,
-}
-
-#[derive(Debug)]
-struct Record {
-    /// How the picture shows the current screen, if it is not the picture itself.
-    enlargement: Option<Enlargement>,
-    events: Vec<Event>,
-}
+struct Recorder(Mutex<Vec<Explainer>>);
 
 impl Recorder {
-    const fn new(watched: Option<Pixel>) -> Self {
-        Self { watched, record: Mutex::new(Record { enlargement: None, events: Vec::new() }) }
+    fn lock(&self) -> MutexGuard<'_, Vec<Explainer>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn lock(&self) -> MutexGuard<'_, Record> {
-        self.record.lock().unwrap_or_else(PoisonError::into_inner)
+    fn tell(&self, event: &Event) {
+        self.lock().iter_mut().for_each(|explainer| explainer.read(event));
     }
 
-    fn push(&self, event: Event) {
-        self.lock().events.push(event);
-    }
-
-    fn push_at(&self, pixel: Pixel, event: impl FnOnce() -> Event) {
-        let mut record = self.lock();
-        let is_wanted = self.watched.is_none_or(|watched| within(watched, record.enlargement) == pixel);
-        if is_wanted {
-            record.events.push(event());
+    /// The event is not made if nobody asks for its pixel.
+    fn tell_at(&self, pixel: Pixel, event: impl FnOnce() -> Event) {
+        let mut explainers = self.lock();
+        let mut concerned = explainers.iter_mut().filter(|explainer| explainer.here() == pixel).peekable();
+        if concerned.peek().is_some() {
+            let event = event();
+            concerned.for_each(|explainer| explainer.read(&event));
         }
     }
-}
-
-/// The pixel of the current screen that a pixel of the picture shows.
-pub(super) fn within(pixel: Pixel, enlargement: Option<Enlargement>) -> Pixel {
-    enlargement.map_or(pixel, |enlargement| enlargement.pixel_at(pixel))
 }
 
 impl Observer for Recorder {
     fn written(&self, pixel: Pixel, color: Color) {
-        self.push_at(pixel, || Event::Written(pixel, color));
+        self.tell_at(pixel, || Event::Written(color));
     }
 
     fn cleared(&self, color: Color) {
-        self.push(Event::Cleared(color));
+        self.tell(&Event::Cleared(color));
     }
 
     fn tested(&self, pixel: Pixel, depth: f64, stored: f64, passed: bool) {
-        self.push_at(pixel, || Event::Tested { at: pixel, depth, stored, passed });
+        self.tell_at(pixel, || Event::Tested { depth, stored, passed });
     }
 
     fn enlarged(&self, enlargement: Option<Enlargement>) {
-        let mut record = self.lock();
-        record.enlargement = enlargement;
-        record.events.push(Event::Enlarged(enlargement));
+        self.tell(&Event::Enlarged(enlargement));
     }
 
     fn begun(&self, what: &dyn Any) {
-        self.push(Event::begun(what));
+        self.tell(&Event::begun(what));
     }
 
     fn done(&self) {
-        self.push(Event::Done);
+        self.tell(&Event::Done);
     }
 
     fn note(&self, pixel: Pixel, text: &dyn Fn() -> String) {
-        self.push_at(pixel, || Event::Noted(pixel, text()));
+        self.tell_at(pixel, || Event::Noted(text()));
     }
 }
 
 impl Probe for Recorder {
     fn assembled(&self, triangle: &dyn Fn() -> Assembled) {
-        self.push(Event::Assembled(triangle()));
+        self.tell(&Event::Assembled(Arc::new(triangle())));
     }
 
     fn piece(&self, piece: &dyn Fn() -> Piece) {
-        self.push(Event::Piece(piece()));
+        self.tell(&Event::Piece(Arc::new(piece())));
     }
 
     fn culled(&self) {
-        self.push(Event::Culled);
+        self.tell(&Event::Culled);
     }
 
     fn fragment(&self, pixel: Pixel, fragment: &dyn Fn() -> Fragment) {
-        self.push_at(pixel, || Event::Fragment(pixel, fragment()));
+        self.tell_at(pixel, || Event::Fragment(fragment()));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::framebuffer::Framebuffer;
+
+    #[test]
+    fn of_very_many_events_the_first_and_the_last_are_told() {
+        fn draw(picture: &mut Framebuffer) {
+            for i in 0..10_020 {
+                picture.set(1, 1, Color::gray((i % 251) as u8));
+                picture.set(2, 1, Color::RED);
+            }
+        }
+        let variant = Variant::new("often", draw, "").size(4, 4);
+        let history = history("ch00", &variant, &variant.options(None), (1, 1));
+        assert_eq!(history.entries.len(), 10_001);
+        assert_eq!(history.entries[9999].title, "20 more are left out here");
+        let last = Color::gray((10_019 % 251) as u8);
+        assert_eq!([history.color(), history.last_color()], [last; 2]);
+        assert!(history.to_string().contains(&format!("written         {last:?}\n\nIn the picture")));
     }
 }

@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
+use super::event::Primitive;
 use super::history::{Field, USED, Value, field, table, value_names};
-use super::record::Primitive;
 use crate::exact::edge::{Coverage, SUBPIXELS, center};
 use crate::interpolate::{
     EdgeParameter, Interpolation, Projected, ScreenTriangle, attach_depths, ends_of_row, linear,

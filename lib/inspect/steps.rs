@@ -1,8 +1,12 @@
-//! What was recorded, as pictures: the order in which things happened, and how often each pixel was written.
+//! The order in which a picture came about, as an animation.
+
+use std::any::Any;
+use std::fmt;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use glam::{DMat3, DVec2, DVec3};
 
-use super::record::{Event, Primitive, Recording};
+use super::event::{Event, Primitive};
 use crate::clip::{Assembled, ClipVertex, clip_polygon};
 use crate::color::Color;
 use crate::exact::edge::SUBPIXELS;
@@ -10,23 +14,37 @@ use crate::figure::picture::block;
 use crate::figure::{Animation, DrawOptions, Variant};
 use crate::framebuffer::Framebuffer;
 use crate::line::{StepAxis, dda};
-use crate::rect::{Pixel, Rect};
+use crate::observer::{Enlargement, Observer};
+use crate::probe::Probe;
+use crate::rect::Pixel;
 use crate::transform::perspective_divide;
 
 /// At most so many frames.
 const MOST: usize = 240;
 /// As long as there are at most so many primitives, each is shown row by row.
 const FEW: usize = 64;
+/// Of more outlines none is shown.
+const MOST_OUTLINES: usize = 64;
+/// The most writes that are kept: 256 MiB.
+const MAX_WRITES: usize = 1 << 25;
 
-/// One write: where it shows in the picture, its color, and to which row and which primitive it belongs.
+/// What begins with a write, the less before the more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Start {
+    Nothing,
+    Row,
+    Primitive,
+    /// The picture is cleared: no pixel is drawn by that.
+    Clear,
+}
+
+/// One write. There are very many: 8 bytes each.
 #[derive(Clone, Copy, Debug)]
 struct Write {
-    rect: Rect,
-    color: Color,
-    /// The picture is cleared: no pixel is drawn by that.
-    is_clear: bool,
-    row: usize,
-    primitive: usize,
+    /// The pixel of the current screen; no side has more than [`Framebuffer::MAX_SIDE`].
+    at: [u16; 2],
+    color: [u8; 3],
+    start: Start,
 }
 
 /// The outline of a polygon, shown after so many writes.
@@ -40,12 +58,46 @@ struct Outline {
 #[derive(Debug)]
 pub struct Steps {
     size: (u32, u32),
-    writes: Vec<Write>,
-    outlines: Vec<Outline>,
+    story: Story,
     /// For each frame, how many writes it shows, and which outline.
     frames: Vec<(usize, Option<usize>)>,
     last: Framebuffer,
 }
+
+/// What was written.
+#[derive(Debug, Default)]
+struct Story {
+    writes: Vec<Write>,
+    /// How many writes there were that are not kept.
+    untold: usize,
+    /// From which write on the picture shows the screen enlarged, and how.
+    enlargements: Vec<(usize, Option<Enlargement>)>,
+    outlines: Vec<Outline>,
+}
+
+/// A picture has more steps than are kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TooManySteps {
+    /// A size that is not too large.
+    pub fitting: (u32, u32),
+}
+
+impl TooManySteps {
+    /// A picture of this size has too many steps, and would have few enough with `part` of its pixels.
+    fn of((width, height): (u32, u32), part: f64) -> Self {
+        let side = |side: u32| ((f64::from(side) * part.sqrt()) as u32).max(1);
+        Self { fitting: (side(width), side(height)) }
+    }
+}
+
+impl fmt::Display for TooManySteps {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (width, height) = self.fitting;
+        write!(f, "more steps than are kept ({MAX_WRITES} writes): {width}x{height} pixels would fit")
+    }
+}
+
+impl std::error::Error for TooManySteps {}
 
 /// The corners of a piece on the screen, if the primitive is a triangle.
 fn corners_of(primitive: &Primitive) -> Option<[DVec2; 3]> {
@@ -58,64 +110,109 @@ fn corners_of(primitive: &Primitive) -> Option<[DVec2; 3]> {
     }
 }
 
-impl Steps {
-    /// Draws a variant and records it.
-    #[must_use]
-    pub fn new(variant: &Variant, options: &DrawOptions<'_>) -> Self {
-        let Recording { events, picture, .. } = Recording::new(variant, options, None);
-        Self::of(&events, picture)
-    }
+/// Takes down what is written.
+#[derive(Debug)]
+struct Recorder {
+    most: usize,
+    record: Mutex<Record>,
+}
 
-    /// Reads the events of a picture.
-    fn of(events: &[Event], picture: Framebuffer) -> Self {
-        let mut steps = Self {
-            size: (picture.width(), picture.height()),
-            writes: Vec::new(),
-            outlines: Vec::new(),
-            frames: Vec::new(),
-            last: picture,
-        };
-        let (mut shown_by, mut primitive, mut row) = (None, 0, 0);
-        let mut last: Option<Pixel> = None;
-        let mut clipped: Option<&Assembled> = None;
-        for event in events {
-            match event {
-                Event::Enlarged(enlargement) => shown_by = *enlargement,
-                Event::Assembled(triangle) => clipped = Some(triangle),
-                Event::Begun(begun) => {
-                    (primitive, row, last) = (primitive + 1, row + 1, None);
-                    // Its first piece tells where on the screen the polygon is.
-                    if let Some((triangle, corners)) = clipped.take().zip(corners_of(begun)) {
-                        steps.outline(triangle, corners);
-                    }
-                }
-                Event::Done => (primitive, row, last) = (primitive + 1, row + 1, None),
-                Event::Cleared(color) if shown_by.is_none() => {
-                    (primitive, row) = (primitive + 1, row + 1);
-                    steps.writes.push(Write {
-                        rect: steps.last.rect(),
-                        color: *color,
-                        is_clear: true,
-                        row,
-                        primitive,
-                    });
-                }
-                Event::Written(pixel, color) => {
-                    row += usize::from(last.is_some_and(|last| last.1 != pixel.1));
-                    last = Some(*pixel);
-                    let (factor, origin) = shown_by.map_or((1, (0, 0)), |by| (by.factor, by.origin));
-                    let rect = block(*pixel, factor, origin);
-                    steps.writes.push(Write { rect, color: *color, is_clear: false, row, primitive });
-                }
-                _ => {}
-            }
+#[derive(Debug)]
+struct Record {
+    story: Story,
+    is_enlarged: bool,
+    /// What begins with the next write.
+    start: Start,
+    /// The pixel that the current primitive wrote last.
+    last: Option<Pixel>,
+    /// A triangle whose first piece is still to come.
+    clipped: Option<Arc<Assembled>>,
+}
+
+impl Recorder {
+    fn new(most: usize) -> Self {
+        let (story, start) = (Story::default(), Start::Nothing);
+        Self {
+            most,
+            record: Mutex::new(Record { story, is_enlarged: false, start, last: None, clipped: None }),
         }
-        steps.choose_frames();
-        steps
     }
 
+    fn lock(&self) -> MutexGuard<'_, Record> {
+        self.record.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Record {
+    fn write(&mut self, (x, y): Pixel, color: Color, start: Start, most: usize) {
+        if self.story.writes.len() < most {
+            self.story.writes.push(Write { at: [x as u16, y as u16], color: color.channels(), start });
+        } else {
+            self.story.untold += 1;
+        }
+    }
+
+    const fn begin(&mut self) {
+        (self.start, self.last) = (Start::Primitive, None);
+    }
+}
+
+impl Observer for Recorder {
+    fn written(&self, pixel: Pixel, color: Color) {
+        let mut record = self.lock();
+        let is_new_row = record.last.is_some_and(|last| last.1 != pixel.1);
+        let start = record.start.max(if is_new_row { Start::Row } else { Start::Nothing });
+        (record.start, record.last) = (Start::Nothing, Some(pixel));
+        record.write(pixel, color, start, self.most);
+    }
+
+    fn cleared(&self, color: Color) {
+        let mut record = self.lock();
+        if !record.is_enlarged {
+            record.start = Start::Nothing;
+            record.write((0, 0), color, Start::Clear, self.most);
+        }
+    }
+
+    fn enlarged(&self, enlargement: Option<Enlargement>) {
+        let mut record = self.lock();
+        record.is_enlarged = enlargement.is_some();
+        let from = record.story.writes.len();
+        record.story.enlargements.push((from, enlargement));
+    }
+
+    fn begun(&self, what: &dyn Any) {
+        let mut record = self.lock();
+        match Event::begun(what) {
+            Event::Assembled(triangle) => record.clipped = Some(triangle),
+            Event::Begun(primitive) => {
+                record.begin();
+                // Its first piece tells where on the screen the polygon is.
+                if let Some((triangle, corners)) = record.clipped.take().zip(corners_of(&primitive)) {
+                    record.story.outline(&triangle, corners);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn done(&self) {
+        self.lock().begin();
+    }
+}
+
+impl Probe for Recorder {
+    fn assembled(&self, triangle: &dyn Fn() -> Assembled) {
+        self.lock().clipped = Some(Arc::new(triangle()));
+    }
+}
+
+impl Story {
     /// The polygon after each plane that cut something off.
     fn outline(&mut self, triangle: &Assembled, corners: [DVec2; 3]) {
+        if self.outlines.len() > MOST_OUTLINES {
+            return;
+        }
         let mut polygon: Vec<ClipVertex<0>> = triangle.vertices.iter().map(ClipVertex::from).collect();
         let mut stages = vec![polygon.clone()];
         for plane in &triangle.planes {
@@ -144,36 +241,84 @@ impl Steps {
         }
     }
 
-    /// Steps that suit the picture: pixels of a few lines, rows of a few triangles, else whole primitives.
-    fn choose_frames(&mut self) {
-        let ends = |key: fn(&Write) -> usize| {
-            let mut ends: Vec<usize> = (1..self.writes.len())
-                .filter(|&i| key(&self.writes[i]) != key(&self.writes[i - 1]))
-                .collect();
-            ends.push(self.writes.len());
-            ends
+    /// Steps that suit the picture: pixels of a few lines, rows of a few triangles, else whole primitives. For each frame,
+    /// how many writes it shows, and which outline.
+    fn frames(&self) -> Vec<(usize, Option<usize>)> {
+        let count = self.writes.len();
+        let ends = |least: Start| {
+            let begins = (1..count).filter(move |&i| self.writes[i].start >= least);
+            begins.chain((count > 0).then_some(count))
         };
-        let primitives = ends(|write| write.primitive);
-        let all: Vec<usize> = if self.writes.len() <= MOST {
-            (1..=self.writes.len()).collect()
-        } else if primitives.len() <= FEW {
-            ends(|write| write.row)
+        let least = if count <= MOST {
+            Start::Nothing
+        } else if ends(Start::Primitive).nth(FEW).is_none() {
+            Start::Row
         } else {
-            primitives
+            Start::Primitive
         };
         // Of more steps than frames, several make a frame.
-        let count = all.len().min(MOST);
-        let ends = (1..=count).map(|i| all[i * all.len() / count - 1]);
+        let all = ends(least).count();
+        let most = all.min(MOST);
+        let mut chosen = (1..=most).map(|i| i * all / most).peekable();
+        let ends = ends(least).zip(1..).filter(|(_, step)| chosen.next_if_eq(step).is_some());
         // Outlines come before what is drawn after them, unless they are too many.
-        let shown = if self.outlines.len() <= 64 { self.outlines.len() } else { 0 };
+        let shown = if self.outlines.len() <= MOST_OUTLINES { self.outlines.len() } else { 0 };
+        let mut frames = Vec::new();
         let mut next = 0;
-        for end in ends {
+        for (end, _) in ends {
             while next < shown && self.outlines[next].after < end {
-                self.frames.push((self.outlines[next].after, Some(next)));
+                frames.push((self.outlines[next].after, Some(next)));
                 next += 1;
             }
-            self.frames.push((end, None));
+            frames.push((end, None));
         }
+        frames
+    }
+
+    /// Writes the first `end` writes once more.
+    fn replay(&self, end: usize, picture: &mut Framebuffer) {
+        let mut enlargements = self.enlargements.iter().peekable();
+        let (mut factor, mut origin) = (1, (0, 0));
+        for (i, write) in self.writes[..end].iter().enumerate() {
+            while let Some((_, enlargement)) = enlargements.next_if(|(from, _)| *from <= i) {
+                (factor, origin) = enlargement.map_or((1, (0, 0)), |by| (by.factor, by.origin));
+            }
+            let ([x, y], [red, green, blue]) = (write.at.map(i32::from), write.color);
+            let color = Color::rgb(red, green, blue);
+            if write.start == Start::Clear {
+                picture.clear(color);
+            } else {
+                picture.fill(block((x, y), factor, origin), color);
+            }
+        }
+    }
+}
+
+impl Steps {
+    /// Draws a variant and records it.
+    ///
+    /// # Errors
+    /// If there is no room for all steps: before it is drawn, if each pixel cannot be written twice, else afterwards.
+    pub fn new(variant: &Variant, options: &DrawOptions<'_>) -> Result<Self, TooManySteps> {
+        Self::within(MAX_WRITES, variant, options)
+    }
+
+    fn within(most: usize, variant: &Variant, options: &DrawOptions<'_>) -> Result<Self, TooManySteps> {
+        let size = options.size;
+        let needed = 2 * size.0 as usize * size.1 as usize;
+        if needed > most {
+            return Err(TooManySteps::of(size, most as f64 / needed as f64));
+        }
+        let recorder = Arc::new(Recorder::new(most));
+        let last = variant.draw(&DrawOptions { observer: Some(recorder.clone()), ..options.clone() });
+        let story = std::mem::take(&mut recorder.lock().story);
+        if story.untold > 0 {
+            // Fewer pixels have somewhat more at the borders of triangles.
+            let part = 0.9 * most as f64 / (most + story.untold) as f64;
+            return Err(TooManySteps::of(size, part));
+        }
+        let frames = story.frames();
+        Ok(Self { size, story, frames, last })
     }
 
     /// How long the animation is, and how fast: one that can be followed.
@@ -189,53 +334,72 @@ impl Steps {
     pub fn frame(&self, number: u32) -> Framebuffer {
         let Some(&(end, outline)) = self.frames.get(number as usize) else { return self.last.clone() };
         let mut picture = Framebuffer::new(self.size.0, self.size.1);
-        for write in &self.writes[..end] {
-            picture.fill(write.rect, write.color);
-        }
-        for [a, b] in outline.iter().flat_map(|&i| &self.outlines[i].lines) {
+        self.story.replay(end, &mut picture);
+        for [a, b] in outline.iter().flat_map(|&i| &self.story.outlines[i].lines) {
             dda(*a, *b, StepAxis::Longer, picture.rect(), |x, y| picture.set(x, y, Color::rgb(255, 220, 60)));
         }
         picture
     }
-
-    /// How often each pixel was written, as colors, and what the colors mean: a line each.
-    #[must_use]
-    pub fn overdraw(&self) -> (Framebuffer, Vec<String>) {
-        let mut counts = vec![0_usize; self.size.0 as usize * self.size.1 as usize];
-        let all = self.last.rect();
-        for write in self.writes.iter().filter(|write| !write.is_clear) {
-            for y in write.rect.rows() {
-                for x in write.rect.columns() {
-                    if let Some(index) = all.index(x, y) {
-                        counts[index] += 1;
-                    }
-                }
-            }
-        }
-        let mut picture = Framebuffer::new(self.size.0, self.size.1);
-        let mut totals = [0_usize; HEAT.len()];
-        for (x, y) in all.rows().flat_map(|y| all.columns().map(move |x| (x, y))) {
-            let count = all.index(x, y).map_or(0, |index| counts[index]).min(HEAT.len() - 1);
-            totals[count] += 1;
-            picture.set(x, y, HEAT[count].0);
-        }
-        let line = |(i, total): (usize, &usize)| {
-            let more = if i + 1 == HEAT.len() { " or more" } else { "" };
-            let pixels = if *total == 1 { "pixel" } else { "pixels" };
-            format!("{i}{more}: {} ({total} {pixels})", HEAT[i].1)
-        };
-        let title = "How often each pixel was written:".to_owned();
-        (picture, std::iter::once(title).chain(totals.iter().enumerate().map(line)).collect())
-    }
 }
 
-/// Colors for 0, 1, 2, … writes.
-pub(super) const HEAT: [(Color, &str); 7] = [
-    (Color::BLACK, "black"),
-    (Color::rgb(40, 70, 130), "blue"),
-    (Color::rgb(255, 220, 60), "yellow"),
-    (Color::rgb(250, 150, 40), "orange"),
-    (Color::rgb(235, 60, 40), "red"),
-    (Color::rgb(230, 60, 180), "pink"),
-    (Color::WHITE, "white"),
-];
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Each pixel of the left half three times, in rows.
+    fn thrice(picture: &mut Framebuffer) {
+        picture.clear(Color::BLUE);
+        let half = crate::rect::Rect { right: picture.rect().right / 2, ..picture.rect() };
+        for gray in [80, 160, 240] {
+            picture.fill(half, Color::gray(gray));
+        }
+    }
+
+    #[test]
+    fn what_does_not_fit_is_refused_with_a_size_that_does() {
+        let variant = Variant::new("thrice", thrice, "").size(64, 48);
+        let steps =
+            |size, most| Steps::within(most, &variant, &DrawOptions { size, ..variant.options(None) });
+        assert!(steps((64, 48), 2 * 64 * 48).is_ok());
+        let refused = |most| steps((64, 48), most).expect_err("too many");
+        // Before it is drawn, by its size alone.
+        let TooManySteps { fitting } = refused(2 * 64 * 48 - 1);
+        assert_eq!(fitting, (63, 47));
+        assert!(steps(fitting, 2 * 64 * 48 - 1).is_ok());
+        assert_eq!(refused(2 * 32 * 24).fitting, (32, 24));
+    }
+
+    #[test]
+    fn more_writes_than_pixels_promise_are_refused_too() {
+        fn often(picture: &mut Framebuffer) {
+            for _ in 0..20 {
+                picture.fill(picture.rect(), Color::RED);
+            }
+        }
+        let variant = Variant::new("often", often, "").size(64, 48);
+        let steps = |size| Steps::within(1 << 13, &variant, &DrawOptions { size, ..variant.options(None) });
+        let TooManySteps { fitting } = steps((64, 48)).expect_err("20 × 3072 writes");
+        assert!(fitting.0 > 20 && steps(fitting).is_ok(), "{fitting:?}");
+        let text = TooManySteps { fitting }.to_string();
+        assert_eq!(
+            text,
+            format!(
+                "more steps than are kept (33554432 writes): {}x{} pixels would fit",
+                fitting.0, fitting.1
+            )
+        );
+    }
+
+    #[test]
+    fn frames_end_with_rows_and_show_what_was_written() {
+        let variant = Variant::new("thrice", thrice, "").size(64, 48);
+        let steps = Steps::new(&variant, &variant.options(None)).expect("a small picture");
+        // The clear, and three times 48 rows; the first row of each follows a higher one.
+        assert_eq!(steps.frames.len(), 1 + 3 * 48);
+        let first = steps.frame(1);
+        let seen = |x, y| first.get(x, y);
+        assert_eq!([seen(0, 0), seen(31, 0)], [Some(Color::gray(80)); 2]);
+        assert_eq!([seen(32, 0), seen(0, 1)], [Some(Color::BLUE); 2]);
+        assert!(steps.frame(3 * 48) == steps.frame(999), "the finished picture");
+    }
+}

@@ -10,7 +10,9 @@ use super::MAX_WARNINGS;
 use super::statements::{Statements, keyword, name_without_comment, readable, without_comment, words};
 use super::text::Count;
 use crate::color::Color;
-use crate::files::{FileError, MAX_FILE_BYTES, MAX_TEXELS, Warnings, load_texture_within, read_file_within};
+use crate::files::{
+    FileError, MAX_FILE_BYTES, MAX_TEXELS, Warnings, load_texture_within, read_file_within, shown_path,
+};
 use crate::texture::Texture;
 
 /// The most libraries of a model, and the most materials of a library, that are read.
@@ -49,11 +51,11 @@ impl Materials {
         let mut left = MAX_FILE_BYTES;
         for (line, names) in statements {
             if known.len() >= MAX_LIBRARIES {
-                warnings.push(format!("{}: line {line}: more libraries than are read", model.display()));
+                warnings.push(format!("{}: line {line}: more libraries than are read", shown_path(model)));
                 break;
             }
             if names.is_empty() {
-                warnings.push(format!("{}: line {line}: mtllib without a name", model.display()));
+                warnings.push(format!("{}: line {line}: mtllib without a name", shown_path(model)));
             }
             for path in library_names(folder_of(model), names).into_iter().take(MAX_LIBRARIES) {
                 // The same file under another name is the same file.
@@ -66,7 +68,7 @@ impl Materials {
                         materials.add_library(&path, &text, warnings);
                     }
                     Err(error) => {
-                        let place = format!("{}: line {line}", model.display());
+                        let place = format!("{}: line {line}", shown_path(model));
                         warnings.push(format!("{place}: a material library cannot be used: {error}"));
                     }
                 }
@@ -83,7 +85,7 @@ impl Materials {
         for (line, statement) in Statements::new(text) {
             plain.take(line, &statement);
         }
-        let of_this = |warning: String| format!("{}: {warning}", path.display());
+        let of_this = |warning: String| format!("{}: {warning}", shown_path(path));
         let (materials, more) = plain.finish();
         warnings.extend(more.into_iter().map(of_this));
         for material in materials {
@@ -103,8 +105,10 @@ impl Materials {
         let found: Vec<Option<usize>> = used.iter().map(find).collect();
         for (name, _) in used.iter().zip(&found).filter(|(_, place)| place.is_none()) {
             let name = readable(name);
-            warnings
-                .push(format!("{}: material '{name}' is in no library: drawn in gray", self.model.display()));
+            warnings.push(format!(
+                "{}: material '{name}' is in no library: drawn in gray",
+                shown_path(&self.model)
+            ));
         }
         self.warn_of_what_is_not_drawn(found.iter().flatten(), warnings);
         let mut made = HashMap::new();
@@ -127,7 +131,7 @@ impl Materials {
             }
         }
         for (library, words) in words.into_iter().filter(|(_, words)| !words.is_empty()) {
-            let path = self.libraries[library].display();
+            let path = shown_path(&self.libraries[library]);
             warnings.push(format!("{path}: only Kd and map_Kd are drawn; left out: {}", words.join(", ")));
         }
     }
@@ -141,8 +145,12 @@ impl Materials {
         let Some(name) = &material.map else { return plain };
         let library = &self.libraries[material.library];
         let folders = [folder_of(library), folder_of(&self.model)];
-        let who =
-            format!("{}: line {}: material '{}'", library.display(), material.line, readable(&material.name));
+        let who = format!(
+            "{}: line {}: material '{}'",
+            shown_path(library),
+            material.line,
+            readable(&material.name)
+        );
         match self.pictures.load(&find_picture(folders, name), warnings) {
             Ok(picture) => match material.color.unwrap_or([1.0; 3]) {
                 [1.0, 1.0, 1.0] => Some(picture),

@@ -35,7 +35,7 @@ mod triangulate;
 
 use std::path::Path;
 
-use crate::files::{FileError, Warnings, read_file, shown};
+use crate::files::{FileError, Warnings, read_file, shown, shown_path};
 use crate::mesh::Mesh;
 use crate::texture::Texture;
 use glam::DVec3;
@@ -124,7 +124,7 @@ impl Model {
             return Err(failure("has no faces; is it an OBJ file?".to_owned()));
         }
 
-        let of_this = |warning: String| format!("{}: {warning}", path.display());
+        let of_this = |warning: String| format!("{}: {warning}", shown_path(path));
         let mut warnings: Warnings = found.warnings().into_iter().map(of_this).collect();
         let mut materials = Materials::load(path, &found.libraries, &mut warnings);
         let textures = materials.textures(&found.materials, &mut warnings);

@@ -2,7 +2,6 @@
 
 use std::error::Error;
 use std::io::IsTerminal;
-use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use rayon::prelude::*;
@@ -58,11 +57,13 @@ pub(super) fn progress_bar(length: u64, what: &'static str) -> ProgressBar {
     }
     let style = ProgressStyle::with_template("{bar:40} {pos} of {len} {msg}, {eta} left");
     let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::stderr()).with_message(what);
-    bar.enable_steady_tick(Duration::from_millis(200));
-    match style {
+    let bar = match style {
         Ok(style) => bar.with_style(style),
         Err(_) => bar,
-    }
+    };
+    // It shows itself now, and whenever something is done: a steady tick needs a thread, which may not be had.
+    bar.tick();
+    bar
 }
 
 fn encode_png(animation: Animation, draw: Draw<'_>) -> Result<Vec<u8>, Box<dyn Error>> {

@@ -14,6 +14,7 @@ mod programs;
 mod run;
 mod scenes;
 mod show;
+mod threads;
 mod values;
 #[cfg(feature = "window")]
 mod window;

@@ -1,13 +1,14 @@
 //! Where pictures go: file names, formats, and writing without ever leaving half a file behind.
 
 use std::error::Error;
-use std::io::{ErrorKind, Write};
+use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 use image::ImageFormat;
 
 use super::failure::Failure;
 use super::show::Screen;
+use crate::files::{shown, shown_path};
 use crate::framebuffer::Framebuffer;
 use crate::save::{encode, replace};
 
@@ -39,7 +40,7 @@ impl Destination {
             Some(other) => Err(Failure::Usage(format!(
                 "cannot write {}: '.{other}' is no picture format that is written; these are .png .bmp .tga .ppm, of \
                  animations .gif .png (a folder ends in /)",
-                path.display()
+                shown_path(&path)
             ))),
         }
     }
@@ -64,7 +65,7 @@ impl Destination {
             return self.put(name, picture);
         };
         if extension(&path).as_deref() == Some("gif") {
-            return Err(Failure::Usage(format!("{} is for an animation: give --animate", path.display())));
+            return Err(Failure::Usage(format!("{} is for an animation: give --animate", shown_path(&path))));
         }
         let format = ImageFormat::from_path(&path).unwrap_or(ImageFormat::Png);
         let bytes = encode(picture, format).map_err(|error| cannot_write(&path, &error))?;
@@ -98,7 +99,7 @@ impl Destination {
             _ => {
                 return Err(Failure::Usage(format!(
                     "{}: an animation is a .gif or a .png file",
-                    path.display()
+                    shown_path(&path)
                 )));
             }
         };
@@ -118,22 +119,30 @@ pub(super) enum AnimationFormat {
 
 /// The extension of a path, in lower case.
 fn extension(path: &Path) -> Option<String> {
-    path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase)
+    path.extension().map(|extension| extension.to_string_lossy().to_ascii_lowercase())
 }
 
 /// Writes a whole file or nothing, and prints its path.
 fn replace_file(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     replace(path, bytes).map_err(|error| Failure::Runtime(format!("cannot write {error}")))?;
-    say(&path.display().to_string())
+    say_path(path)
 }
 
 fn cannot_write(path: &Path, error: &dyn Error) -> Failure {
-    Failure::Runtime(format!("cannot write {}: {error}", path.display()))
+    Failure::Runtime(format!("cannot write {}: {error}", shown_path(path)))
 }
 
 /// A line on standard output.
 pub(super) fn say(line: &str) -> Result<(), Failure> {
     put(format!("{line}\n").as_bytes())
+}
+
+/// The path of a file, a line on standard output: for people as a terminal may show it, for programs as it is.
+fn say_path(path: &Path) -> Result<(), Failure> {
+    if std::io::stdout().is_terminal() {
+        return say(&shown_path(path));
+    }
+    put(&[path.as_os_str().as_encoded_bytes(), b"\n"].concat())
 }
 
 /// Bytes on standard output.
@@ -145,9 +154,11 @@ fn put(bytes: &[u8]) -> Result<(), Failure> {
     })
 }
 
-/// A line on standard error; a failure is not reported.
-pub(super) fn note(line: &str) {
-    let _ = writeln!(std::io::stderr(), "{line}");
+/// Lines on standard error; a failure is not reported. All that is said there comes through here, and may quote names and
+/// arguments: nothing of them commands the terminal.
+pub(super) fn note(lines: &str) {
+    let lines: String = lines.split('\n').flat_map(|line| [shown(line), "\n".to_owned()]).collect();
+    let _ = std::io::stderr().write_all(lines.as_bytes());
 }
 
 #[cfg(test)]

@@ -14,13 +14,14 @@ use super::options::{knob_list, list};
 use super::output::{Destination, note, say};
 use super::scenes::{check_inside, load, name_of, pair_of, scene_of, sweepable, unseen};
 use super::show::Screen;
+use super::threads;
 #[cfg(feature = "window")]
 use super::window::open_window;
 use super::wrap::{WIDEST, terminal_width, wrap_columns};
 use crate::figure::picture::{Zoom, difference, side_by_side, zoomed};
 use crate::figure::{Animation, Chapter, DrawOptions, Knob, Scene, Variant};
 use crate::framebuffer::Framebuffer;
-use crate::inspect::{Steps, history, with_legend};
+use crate::inspect::{Steps, history, overdraw, with_legend};
 use crate::rect::{Pixel, Rect};
 
 impl Chapter {
@@ -41,7 +42,11 @@ fn main(chapter: &Chapter) -> ExitCode {
         }
         Err(error) => {
             // The version goes to standard output, errors to standard error; a closed pipe is not worth a word.
-            let _ = error.print();
+            if error.use_stderr() {
+                note(error.render().to_string().trim_end());
+            } else {
+                let _ = error.print();
+            }
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
         }
     };
@@ -72,6 +77,7 @@ fn run(chapter: &Chapter, request: &Request) -> Result<(), Failure> {
         let wrapped = terminal_width().map(|width| wrap_columns(&list, width));
         return say(wrapped.as_deref().unwrap_or(&list).trim_end());
     }
+    threads::start();
     let default = || PathBuf::from("out").join(chapter.name);
     let destination = match request.show {
         Some(asked) => Destination::Screen(Screen::find(asked)?),
@@ -232,13 +238,15 @@ fn inspect_pixel(
 /// Draws how a picture came about: step by step, or how often each pixel was written.
 fn draw_recorded(variant: &Variant, request: &Request, destination: &Destination) -> Result<(), Failure> {
     let scene = scene_of(variant, request, &load(request)?)?;
-    let steps = Steps::new(variant, &scene.options(None));
     if request.steps {
+        let steps = Steps::new(variant, &scene.options(None));
+        let steps =
+            steps.map_err(|error| Failure::Usage(format!("'{}' has {error} (--size)", variant.name)))?;
         let draw = |number| enlarged(steps.frame(number), request.zoom);
         let name = format!("{}-steps", name_of(&scene, request));
         return destination.write_animation(&name, |format| encode(format, steps.animation(), &draw));
     }
-    let (heat, legend) = steps.overdraw();
+    let (heat, legend) = overdraw(variant, &scene.options(None));
     note(&legend.join("\n"));
     let name = format!("{}-overdraw", name_of(&scene, request));
     destination.write(&name, &with_legend(enlarged(heat, request.zoom)))?;

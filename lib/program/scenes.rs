@@ -12,7 +12,7 @@ use super::output::note;
 use crate::color::Color;
 use crate::figure::picture::Zoom;
 use crate::figure::{DrawOptions, Given, Knob, KnobError, RasterizerChoice, Scene, Subject, Variant};
-use crate::files::{FileError, load_texture, shown};
+use crate::files::{FileError, load_texture, shown_path};
 use crate::framebuffer::Framebuffer;
 use crate::model::Model;
 use crate::rect::{Pixel, Rect};
@@ -71,7 +71,7 @@ pub(super) fn load(request: &Request) -> Result<Given, Failure> {
         warnings.extend(more);
         if request.texture.is_some() && !loaded.has_texture_coordinates() {
             let odd = "has no texture coordinates: one texel covers all of it";
-            warnings.push(shown(&format!("{}: {odd}", path.display())));
+            warnings.push(format!("{}: {odd}", shown_path(path)));
         }
         model = Some(if request.as_is { loaded } else { loaded.fitted(PLACE.0, PLACE.1) });
     }
@@ -186,7 +186,7 @@ pub(super) fn unseen(path: &Path, scene: &Scene<'_>, picture: &Framebuffer) -> O
         (true, true) => "its faces are seen from their edge",
         (true, false) => "its faces turn away from the eye, or lie outside the view",
     };
-    Some(shown(&format!("nothing of {} is visible: {reason}", path.display())))
+    Some(format!("nothing of {} is visible: {reason}", shown_path(path)))
 }
 
 /// The file name of a picture as it was asked for, without extension.

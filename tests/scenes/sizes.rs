@@ -4,7 +4,7 @@
 use crate::chapters::{CHAPTERS, variant};
 use rasterbook::figure::picture::paste;
 use rasterbook::figure::{DrawOptions, Variant};
-use rasterbook::inspect::{Steps, history};
+use rasterbook::inspect::{history, overdraw};
 use rasterbook::{Color, Framebuffer, Pixel};
 use rayon::prelude::*;
 
@@ -136,9 +136,8 @@ fn an_enlarged_screen_is_asked_where_it_is_shown() {
         let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
         assert!(words.contains(&place) && words.contains("written"), "{size:?}: {text}");
 
-        // Each step that was recorded lies where the picture shows it: the last of them is the picture but for its grid.
-        let steps = Steps::new(hexagon, &options);
-        let (heat, _) = steps.overdraw();
+        // Each write is counted where the picture shows it: but for its grid, what was written is the picture.
+        let (heat, _) = overdraw(hexagon, &options);
         let picture = hexagon.draw(&options);
         assert_eq!(differing(&heat, |x, y| Some(heat_of(picture.get(x, y)))), 0, "{size:?}");
 
