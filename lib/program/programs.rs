@@ -42,6 +42,7 @@ pub const PROGRAMS: [Program; 11] = [
             "clamped",
             "shared-edge",
             "top-left",
+            "two-rules",
             "bounding-box",
             "one-sample",
             "supersampled",
