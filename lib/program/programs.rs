@@ -78,6 +78,7 @@ pub const PROGRAMS: [Program; 11] = [
             "square",
             "reciprocal",
             "barycentric",
+            "from-above",
             "floor-affine",
         ],
         has_model: false,
