@@ -63,7 +63,7 @@ pub const PROGRAMS: [Program; 11] = [
     Program {
         name: "ch04_projection",
         question: "Why is small what is far away?",
-        variants: &["cube", "orthographic", "rails", "near"],
+        variants: &["cube", "orthographic", "rails", "near", "from-above"],
         has_model: false,
         has_texture: false,
     },
