@@ -95,6 +95,7 @@ pub const PROGRAMS: [Program; 11] = [
             "painter-green-first",
             "depth",
             "w-buffer",
+            "steps",
             "uncleared",
             "cleared",
         ],
