@@ -112,7 +112,16 @@ pub const PROGRAMS: [Program; 11] = [
     Program {
         name: "ch08_cvv",
         question: "What of the world gets into the picture?",
-        variants: &["clipped", "ndc", "planes", "frustum", "divide-first", "clip-first", "zero-to-one"],
+        variants: &[
+            "clipped",
+            "ndc",
+            "planes",
+            "frustum",
+            "outside",
+            "divide-first",
+            "clip-first",
+            "zero-to-one",
+        ],
         has_model: false,
         has_texture: false,
     },

@@ -23,7 +23,7 @@ chapters!(
     "../../chapters/ch05_perspective_correct/main.rs" ch05_perspective_correct,
     "../../chapters/ch06_z_buffer/main.rs" ch06_z_buffer,
     "../../chapters/ch07_clipping.rs" ch07_clipping,
-    "../../chapters/ch08_cvv.rs" ch08_cvv,
+    "../../chapters/ch08_cvv/main.rs" ch08_cvv,
     "../../chapters/ch09_pipeline.rs" ch09_pipeline,
     "../../chapters/ch10_matrices_lighting/main.rs" ch10_matrices_lighting,
 );
