@@ -50,7 +50,7 @@ const PIXEL: &[Knob] = &[
     Knob::point(
         "place",
         [200.0, 200.0],
-        "the pixel goes from one whole place to the next: fractions are cut off",
+        "the pixel jumps from one whole position to the next: fractions are cut off",
     ),
     Knob::color(
         "color",
@@ -60,7 +60,7 @@ const PIXEL: &[Knob] = &[
 ];
 
 // ANCHOR: pixel
-/// One pixel: where and in which color, the knobs say.
+/// One pixel: knobs say where it is, and in which color.
 fn pixel(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     let (place, color) = (knobs.point("place"), knobs.color("color"));
     let (x, y) = (place.x as i32, place.y as i32);
@@ -169,7 +169,8 @@ const SUBPIXELS: &[Knob] = &[Knob::color(
 )];
 
 // ANCHOR: subpixels
-/// A screen of 6×4 pixels: the lamps, and what they add up to. The upper left pixel has the knob's color.
+/// A screen of 6×4 pixels: the lamps, and what they add up to. The upper left pixel has the knob's
+/// color.
 fn subpixels(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     const CELL: i32 = 52;
     let mut screen = COLORS;

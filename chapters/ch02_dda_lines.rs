@@ -1,7 +1,7 @@
 //! # Chapter 2, first part: lines
 //!
 //! **Which pixels belong to a line between two points?** A line has no width and pixels have no gaps: one coordinate
-//! must go up pixel by pixel, and the other one follows. Which of the two, that is the question.
+//! is stepped pixel by pixel, and the other one follows. Which of the two is stepped, that is the question.
 //!
 //! New here: the digital differential analyzer, DDA (`lib/line.rs`). Book: section 2.1.
 
@@ -37,7 +37,7 @@ pub(crate) const CHAPTER: Chapter = Chapter {
             "broken",
             broken,
             RAYS,
-            "the same rays, always stepping x: steep ones fall apart into dots, vertical ones vanish",
+            "the same rays, always stepping x: y-major ones fall apart into dots, vertical ones vanish",
         )
         .source("section 2.1, Figure 2-2")
         .size(480, 480)
@@ -57,7 +57,7 @@ const LINE: &[Knob] = &[
     Knob::point(
         "b",
         [100.0, 300.0],
-        "go round a: steep lines have a pixel in each row, flat ones in each column",
+        "go round a: y-major lines have a pixel in each row, x-major ones in each column",
     ),
 ];
 
@@ -91,7 +91,7 @@ fn broken(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     rays(framebuffer, StepAxis::X, knobs.number("turn"));
 }
 
-/// A color for each eighth of the circle, counter-clockwise from the right.
+/// A color for each octant (eighth of the circle), counter-clockwise from the right.
 const OCTANTS: [Color; 8] = [
     Color::rgb(255, 96, 96),
     Color::rgb(255, 176, 64),
@@ -104,15 +104,16 @@ const OCTANTS: [Color; 8] = [
 ];
 
 // ANCHOR: rays
-/// Rays from the middle to points all round a square, six in each octant; all are turned by an angle in
-/// degrees. `fit` scales them to the size of the picture.
+/// Rays from the middle to points all round a square, six in each octant; all are rotated by an
+/// angle in degrees. `fit` scales them to the size of the picture.
 fn rays(framebuffer: &mut Framebuffer, axis: StepAxis, turn: f64) {
     let fit = Fit::new(framebuffer.rect(), [480.0, 480.0]);
     let (sin, cos) = libm::sincos(turn * PI / 180.0);
     let center = dvec2(240.0, 240.0);
     for (octant, color) in OCTANTS.into_iter().enumerate() {
         for i in 0..6 {
-            // Up the right side of the square, or along its top to the left; then turned by quarters of a circle.
+            // Up the right side of the square, or along its top to the left; then rotated by
+            // quarter turns.
             let along = 38.0 * f64::from(i);
             let ray = if octant % 2 == 0 { dvec2(228.0, along) } else { dvec2(228.0 - along, 228.0) };
             let ray = (0..octant / 2).fold(ray, |ray, _| ray.perp());
@@ -124,7 +125,7 @@ fn rays(framebuffer: &mut Framebuffer, axis: StepAxis, turn: f64) {
 // ANCHOR_END: rays
 
 // ANCHOR: wireframe
-/// The edges of a model's triangles, seen along z: of each corner x and y are enough.
+/// The edges of a model's triangles, seen along z: of each vertex x and y are enough.
 fn wireframe(framebuffer: &mut Framebuffer, subject: &Subject) {
     let fit = Fit::new(framebuffer.rect(), [480.0, 480.0]);
     let on_screen = |point: DVec3| fit.at(dvec2(240.0, 240.0) + point.truncate() * 135.0);

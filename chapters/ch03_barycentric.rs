@@ -1,6 +1,6 @@
 //! # Chapter 3: barycentric interpolation and textures
 //!
-//! **The corners have values: which value has a pixel between them?** The nearer a corner, the more it weighs. Along a
+//! **The vertices have values: what value does a pixel between them get?** The nearer a vertex, the more it weighs. Along a
 //! straight line the weights change linearly, so that the scanline walk needs one addition a pixel.
 //!
 //! New here: interpolation (`lib/interpolate.rs`) and textures (`lib/texture.rs`). The walk is that of chapter 2; what
@@ -20,22 +20,22 @@ use rasterbook::{Color, Framebuffer};
 
 pub(crate) const CHAPTER: Chapter = Chapter {
     name: "ch03_barycentric",
-    question: "The corners have values: which value has a pixel between them?",
+    question: "The vertices have values: what value does a pixel between them get?",
     variants: &[
-        Variant::with_knobs("weights", weights, WEIGHTS, "the weight of each corner by areas: its lines of equal weight run along the opposite edge")
+        Variant::with_knobs("weights", weights, WEIGHTS, "the weight of each vertex by areas: its lines of equal weight run along the opposite edge")
             .source("section 3.2.2, Figures 3-6 and 3-7"),
         Variant::with_knobs("areas", areas, AREAS, "the weights of one point as areas: each small triangle has the color of the vertex opposite to it, and is the brighter the larger it is")
             .source("section 3.2.2, Figure 3-6"),
-        Variant::with_knobs("rgb", rgb, RGB, "red, green and blue corners, and all their mixtures between them").source("section 3.2.5"),
-        Variant::with_knobs("gray", gray, GRAY, "one value a corner: black, white, black").source("section 3.2.4"),
+        Variant::with_knobs("rgb", rgb, RGB, "red, green and blue vertices, and all their mixtures between them").source("section 3.2.5"),
+        Variant::with_knobs("gray", gray, GRAY, "one value a vertex: black, white, black").source("section 3.2.4"),
         Variant::with_knobs("texture", texture, TEXTURE, "texture coordinates as values: half of the book's 2×2 texture on a triangle")
             .source("section 3.3, Figures 3-10 and 3-11"),
-        Variant::new("spikes", spikes, "orange: values out of the range of the corners, at the tips (past the end of an edge) and at the ends of rows")
+        Variant::new("spikes", spikes, "orange: values out of the range of the vertices, at the tips (past the end of an edge) and at the ends of rows")
             .source("section 11.4")
             .remedied_by("limited"),
-        Variant::new("limited-edges", limited_edges, "the same, limited along the edges as in the book: the tips are right, the ends of rows are not")
+        Variant::new("limited-edges", limited_edges, "the same, clamped along the edges as in the book: the tips are right, the ends of rows are not")
             .source("section 11.4"),
-        Variant::new("limited", limited, "the same, limited along the rows too: no orange pixel is left"),
+        Variant::new("limited", limited, "the same, clamped along the rows too: no orange pixel is left"),
     ],
 };
 
@@ -118,12 +118,12 @@ const WEIGHTS: &[Knob] = &[
     Knob::point(
         "b",
         [590.0, 130.0],
-        "bring it beyond the edge from a to c: the triangle turns over, the lines stay straight",
+        "bring it beyond the edge from a to c: the triangle flips over, the lines stay straight",
     ),
     Knob::point(
         "c",
         [250.0, 440.0],
-        "bring it close to the edge from a to b: its lines crowd together, for its weight changes fast",
+        "bring it close to the edge from a to b: its lines crowd together, since its weight changes fast",
     ),
 ];
 
@@ -138,7 +138,8 @@ fn weights(framebuffer: &mut Framebuffer, knobs: &Knobs) {
         let weights = areas.map(|area| area as f64 / coverage.twice_area as f64);
         let inside = coverage.covers(areas);
         let on_tenth = weights.iter().any(|&weight| (weight * 10.0 - (weight * 10.0).round()).abs() < 0.025);
-        // Beyond an edge the weight of the opposite vertex is negative; dim, so that the triangle stands out.
+        // Beyond an edge the weight of the opposite vertex is negative; dim, so that the triangle
+        // stands out.
         let brightness = if inside == on_tenth {
             110.0
         } else if inside {
@@ -175,8 +176,9 @@ const AREAS: &[Knob] = &[
 ];
 
 // ANCHOR: areas
-/// The weights of a point P: the small triangle opposite to A in red, to B in green, to C in blue, each the
-/// brighter the more its vertex weighs, and P in the mixture of the three. One of negative weight is striped.
+/// The weights of a point P: the small triangle opposite to A in red, to B in green, to C in blue,
+/// each the brighter the more its vertex weighs, and P in the mixture of the three. Negative
+/// weights are striped.
 fn areas(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     let fit = Fit::new(framebuffer.rect(), [640.0, 480.0]);
     let [a, b, c, p] = ["a", "b", "c", "p"].map(|name| fit.at(knobs.point(name)));
@@ -191,7 +193,8 @@ fn areas(framebuffer: &mut Framebuffer, knobs: &Knobs) {
         Color::truncated(channels)
     };
 
-    // The largest first: a triangle of negative weight lies on others, and they show between its stripes.
+    // The largest first: a triangle of negative weight lies on others, and they show between its
+    // stripes.
     let mut order = [0, 1, 2];
     order.sort_by(|&i, &j| weights[j].total_cmp(&weights[i]));
     for i in order {
@@ -222,18 +225,19 @@ fn spikes(framebuffer: &mut Framebuffer) {
     confetti(framebuffer, StepLimit::Overrun);
 }
 
-/// Values limited along the edges.
+/// Values clamped along the edges.
 fn limited_edges(framebuffer: &mut Framebuffer) {
     confetti(framebuffer, StepLimit::Edges);
 }
 
-/// Values limited along edges and rows.
+/// Values clamped along edges and rows.
 fn limited(framebuffer: &mut Framebuffer) {
     confetti(framebuffer, StepLimit::Everywhere);
 }
 
-/// Small triangles on a screen of 80×60 pixels, each at another fraction of a pixel. All vertices have values in 0..=1,
-/// drawn as dark to bright blue; a value outside that range is drawn in orange.
+/// Small triangles on a screen of 80×60 pixels, each at another fraction of a pixel. All vertices
+/// have values in 0..=1, drawn as dark to bright blue; a value outside that range is drawn in
+/// orange.
 fn confetti(framebuffer: &mut Framebuffer, limit: StepLimit) {
     picture::draw_enlarged(framebuffer, (80, 60), |screen| {
         for (column, row) in (0..6).flat_map(|row| (0..7).map(move |column| (column, row))) {

@@ -1,7 +1,7 @@
 //! # Chapter 4: projection
 //!
-//! **Why is small what is far away?** A point is seen where the line from it to the eye crosses the screen. Similar
-//! triangles make a division of it: x′ = n x / z.
+//! **Why do distant things look smaller?** A point is seen where the line from it to the eye crosses the image plane.
+//! Similar triangles make a division of it: x′ = n x / z.
 //!
 //! New here: homogeneous coordinates and the perspective projection (`lib/transform.rs`). The book has no program for
 //! this chapter; the pictures here are made of the lines of chapter 2. Book: chapter 4.
@@ -16,21 +16,22 @@ use rasterbook::{Color, Framebuffer, Rect};
 
 pub(crate) const CHAPTER: Chapter = Chapter {
     name: "ch04_projection",
-    question: "Why is small what is far away?",
+    question: "Why do distant things look smaller?",
     variants: &[
         Variant::with_knobs("cube", cube, CUBE, "five cubes of one size, one behind the other: each looks smaller than the one before it, and so does its back")
             .source("section 4.2.2, Figure 4-3"),
         Variant::with_knobs("orthographic", orthographic_cubes, ORTHOGRAPHIC, "the same cubes without the division: all of one size, and each hides its own back"),
         Variant::with_knobs("rails", rails, RAILS, "parallel rails meet at the horizon; the yellow points, each projected by itself, lie on them: straight stays straight")
             .source("section 4.2.2, Figure 4-4"),
-        Variant::new("near", near, "one scene at n = 150 (blue), 300 (green) and 600 (red): twice the near distance is twice the picture, and nothing else"),
+        Variant::new("near", near, "one scene at n = 150 (blue), 300 (green) and 600 (red): twice the distance n is twice the picture, and nothing else"),
         Variant::with_knobs("from-above", from_above, FROM_ABOVE, "two rods of one length, from above, and the rays from their ends to the eye: on the image plane the far one is the shorter one")
             .source("section 4.2.1"),
     ],
 };
 
 // ANCHOR: to_screen
-/// Divides, and moves the point where the camera looks to the middle of a picture of 640×480, scaled to `picture`.
+/// Divides, and moves the point at which the camera looks to the middle of a picture of 640×480,
+/// scaled to `picture`.
 fn to_screen(clip: DVec4, picture: Rect) -> DVec2 {
     let fit = Fit::new(picture, [640.0, 480.0]);
     fit.at(dvec2(320.0, 240.0) + perspective_divide(clip).truncate())
@@ -49,10 +50,10 @@ fn segment(
 }
 // ANCHOR_END: to_screen
 
-/// The corners of a cube's front, in order round it.
+/// The vertices of a cube's front, in order around it.
 const FRONT: [(f64, f64); 4] = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
 
-/// Draws the edges of an upright cube: those of the front in the color, the others dimmer.
+/// Draws the edges of a cube that faces us: those of the front in the color, the others dimmer.
 fn draw_cube(
     framebuffer: &mut Framebuffer,
     project: impl Fn(DVec3) -> DVec4 + Copy,
@@ -98,8 +99,8 @@ const CUBE: &[Knob] = &[
 const ORTHOGRAPHIC: &[Knob] = &[ASIDE];
 
 // ANCHOR: cubes
-/// Five cubes, each farther away and more to the right than the one before it. The first is at a distance from
-/// the eye, which may have gone aside.
+/// Five cubes, each farther away and more to the right than the one before it. The first is at a
+/// distance from the eye, which may have gone aside.
 fn cubes(framebuffer: &mut Framebuffer, project: impl Fn(DVec3) -> DVec4 + Copy, distance: f64, aside: f64) {
     let colors = [
         Color::rgb(255, 90, 80),
@@ -141,12 +142,13 @@ const RAILS: &[Knob] = &[
         0.0,
         [-250.0, 250.0],
         "",
-        "the eye goes to the right: all lines turn round the point where they meet",
+        "the eye goes to the right: all lines rotate about the point where they meet",
     ),
 ];
 
 // ANCHOR: rails
-/// A railway line towards the horizon, seen from a height above the track; the eye may have gone aside.
+/// A railway line towards the horizon, seen from a height above the track; the eye may have gone
+/// aside.
 fn rails(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     let (height, aside) = (knobs.number("height"), knobs.number("aside"));
     let project = |point: DVec3| perspective(point - dvec3(aside, height, 0.0), 300.0);
@@ -180,7 +182,7 @@ fn rails(framebuffer: &mut Framebuffer, knobs: &Knobs) {
 // ANCHOR_END: rails
 
 // ANCHOR: near
-/// One scene, three near distances.
+/// One scene, three distances of the image plane.
 fn near(framebuffer: &mut Framebuffer) {
     for (near, color) in [
         (600.0, Color::rgb(255, 90, 80)),

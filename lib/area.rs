@@ -18,9 +18,11 @@ use glam::DVec2;
 pub const EPSILON: f64 = 1e-15;
 
 // ANCHOR: twice_signed_area
-/// Twice the signed area of the triangle a, b, c (input in any plane with y up; output in that plane's units, squared).
+/// Twice the signed area of the triangle a, b, c (input in any plane with y up; output in that
+/// plane's units, squared).
 ///
-/// The cross product of two edges, written out. Positive if a, b, c run counter-clockwise:
+/// The cross product of two edges, (b − a) × (c − a), multiplied out. Positive if a, b, c run
+/// counter-clockwise:
 ///
 /// ```text
 ///        c                     b
@@ -28,8 +30,8 @@ pub const EPSILON: f64 = 1e-15;
 ///      a ─ b                 a ─ c
 /// ```
 ///
-/// The book leaves out the division by two (section 2.2): only zero and the sign matter. The order of the six
-/// products is the book's, so that rounding is too.
+/// The book leaves out the division by two (section 2.2): only zero and the sign matter. The order
+/// of the six products is the book's, and so is the rounding.
 #[must_use]
 #[inline]
 pub fn twice_signed_area(a: DVec2, b: DVec2, c: DVec2) -> f64 {

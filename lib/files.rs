@@ -10,6 +10,8 @@
 //! ```
 
 mod decode;
+#[cfg(feature = "jpeg")]
+mod jpeg;
 mod orientation;
 
 use std::error::Error;

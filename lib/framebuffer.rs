@@ -104,7 +104,8 @@ impl Framebuffer {
         }
     }
 
-    /// Where the pixel (x, y) stands in memory; `None` outside the framebuffer. As [`Rect::index`], from (0, 0) on.
+    /// Where the pixel (x, y) stands in memory; `None` outside the framebuffer. As [`Rect::index`],
+    /// from (0, 0) on.
     #[inline]
     fn index(&self, x: i32, y: i32) -> Option<usize> {
         // A negative number becomes a very large one.
@@ -149,13 +150,15 @@ impl Framebuffer {
         self.pixels.chunks(self.width as usize).rev()
     }
 
-    /// The channels of all pixels as an image file holds them: red, green, blue, and the highest row first.
+    /// The channels of all pixels as an image file holds them: red, green, blue, and the highest
+    /// row first.
     #[must_use]
     pub fn rgb_from_top(&self) -> Vec<u8> {
         self.rows_from_top().flatten().flat_map(|color| color.channels()).collect()
     }
 
-    /// Writes the picture as a PPM file (binary, `P6`): a line of text, then three bytes for each pixel.
+    /// Writes the picture as a PPM file (binary, `P6`): a line of text, then three bytes for each
+    /// pixel.
     ///
     /// # Errors
     /// If the writer fails.
@@ -164,6 +167,18 @@ impl Framebuffer {
         writer.write_all(&self.rgb_from_top())
     }
     // ANCHOR_END: write_ppm
+}
+
+impl Framebuffer {
+    /// A number that says whether two pictures are the same, on whichever machines they were drawn: 64-bit FNV-1a of
+    /// width, height, and the channels of all pixels, the first row on top.
+    #[must_use]
+    pub fn fingerprint(&self) -> u64 {
+        let mix = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3);
+        let size = [self.width, self.height].map(u32::to_le_bytes);
+        let pixels = self.rows_from_top().flatten().flat_map(|color| color.channels());
+        size.into_iter().flatten().chain(pixels).fold(0xcbf2_9ce4_8422_2325, mix)
+    }
 }
 
 /// Observers, and stages that write many pixels at a time.
@@ -223,6 +238,17 @@ mod tests {
         }
         framebuffer.fill(Rect { left: 3, bottom: -5, right: 99, top: 99 }, Color::RED);
         assert!(framebuffer == before);
+    }
+
+    #[test]
+    fn another_picture_has_another_fingerprint() {
+        let black = |width, height| Framebuffer::new(width, height).fingerprint();
+        let mut dot = Framebuffer::new(2, 3);
+        dot.set(0, 0, Color::rgb(0, 0, 1));
+        assert_eq!(black(2, 3), black(2, 3));
+        assert!(dot.fingerprint() != black(2, 3) && black(3, 2) != black(2, 3));
+        // That of a single black pixel, computed by hand from the definition.
+        assert_eq!(black(1, 1), 0x5d1e_e66e_3442_9d67);
     }
 
     #[test]

@@ -23,15 +23,16 @@ use crate::scanline::{Edge, Half, Split, split};
 use crate::scissor::Scissor;
 
 // ANCHOR: barycentric_weights
-/// How much each vertex of a triangle weighs at the point p: the area of the small triangle opposite to the vertex, as
-/// a part of the whole. The three weights sum to 1; one is negative beyond the edge opposite to its vertex.
+/// How much each vertex of a triangle weighs at the point p: the area of the small triangle
+/// opposite to the vertex, divided by the whole. The three weights sum to 1; one is negative beyond
+/// the edge opposite to its vertex.
 ///
 /// ```text
-///            C                 w_A = area(P, B, C) / area(A, B, C)
-///           ╱│╲                w_B = area(A, P, C) / area(A, B, C)
-///          ╱ │ ╲               w_C = area(A, B, P) / area(A, B, C)
+///            C                 α = area(P, B, C) / area(A, B, C)
+///           ╱│╲                β = area(A, P, C) / area(A, B, C)
+///          ╱ │ ╲               γ = area(A, B, P) / area(A, B, C)
 ///         ╱  P  ╲
-///        ╱ ╱   ╲ ╲             P = w_A A + w_B B + w_C C
+///        ╱ ╱   ╲ ╲             P = α A + β B + γ C
 ///       A ───────── B
 /// ```
 ///
@@ -58,7 +59,7 @@ pub fn linear<R: Real, const N: usize>(a: [R; N], b: [R; N], t: R) -> [R; N] {
 pub struct ScreenVertex<V> {
     /// Screen space, in pixels, y up.
     pub position: DVec2,
-    /// What the vertex carries: its varyings, in chapter 5 with ω, in chapter 7 with a depth as well.
+    /// What the vertex carries: its varyings, in chapter 5 with w, in chapter 7 with a depth as well.
     pub varyings: V,
 }
 
@@ -67,7 +68,7 @@ pub struct ScreenVertex<V> {
 pub struct ScreenTriangle {
     /// The vertices, in pixels.
     pub positions: [DVec2; 3],
-    /// Their ω, if they have been projected.
+    /// Their w, if they have been projected.
     pub w: Option<[f64; 3]>,
     /// Their varyings.
     pub varyings: [Vec<f64>; 3],
@@ -79,7 +80,7 @@ pub struct ScreenTriangle {
     pub walk: Walk,
 }
 
-/// Emits the pixels of a triangle, each with its values, which go up the two sides and along each row by equal steps.
+/// Emits the pixels of a triangle, each with its values, which are stepped up two edges and along each row.
 ///
 /// Screen space → (x, y, values). Along any straight line on the screen values change linearly (barycentric
 /// interpolation), so that one addition a pixel is enough. Source: book, sections 3.2.4 and 3.2.5.
@@ -105,7 +106,7 @@ fn positions_and_varyings<V: Copy>(triangle: [ScreenVertex<V>; 3]) -> ([DVec2; 3
 }
 
 // ANCHOR: step_values
-/// Steps the values that the three vertices carry up the sides of the triangle, and along each row.
+/// Steps the values that the three vertices carry up the edges of the triangle, and along each row.
 fn step_values_in<const N: usize>(
     triangle: [DVec2; 3],
     values: [[f64; N]; 3],
@@ -114,7 +115,8 @@ fn step_values_in<const N: usize>(
     mut emit: impl FnMut(i32, i32, [f64; N]),
 ) {
     let Some(split) = split(triangle) else { return };
-    // The values at the ends of the halves' edges; those of the new point P′ lie between those of P₁ and P₃.
+    // The values at the ends of the halves' edges; those of the new point P′ lie between those of
+    // P₁ and P₃.
     let [lower, upper] = split.attach(values, linear);
     for (half, values) in [(split.lower, lower), (split.upper, upper)] {
         half.step(&values, walk, scissor, |span, [start, end]| {
@@ -124,7 +126,7 @@ fn step_values_in<const N: usize>(
 }
 // ANCHOR_END: step_values
 
-/// What a vertex carries once it has been projected (chapter 5): its distance ω and its values.
+/// What a vertex carries once it has been projected (chapter 5): its distance w and its values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Projected<R, const N: usize> {
     /// The fourth component before the perspective divide: the distance along the camera's z axis.
@@ -139,19 +141,21 @@ pub struct Projected<R, const N: usize> {
 pub enum Interpolation {
     /// Linearly on the screen, a mistake as soon as the vertices are not equally far away.
     ///
-    /// - Cause: equal steps on the screen are not equal steps in space; what is far away is squeezed.
+    /// - Cause: equal steps on the screen are not equal steps in space.
     /// - Artefact: a texture bends at the diagonal of a quad and swims when the view moves.
     /// - Remedy: [`Interpolation::PerspectiveCorrect`]. Book, section 5.3, Figure 5-3.
     Affine,
     /// Linearly in space: the book's formula ⑧. Book, section 5.4.
     #[default]
     PerspectiveCorrect,
-    /// Linearly in space by the usual two steps: 1/ω and V/ω change linearly on the screen. Book, section 5.5.4.
+    /// Linearly in space by the usual two steps: 1/w and V/w change linearly on the screen. Book,
+    /// section 5.5.4.
     Reciprocal,
 }
 
 impl Interpolation {
-    /// What lies between two projected points at the parameter t′, measured on the screen from a (0) to b (1).
+    /// What lies between two projected points at the parameter t′, measured on the screen from a
+    /// (0) to b (1).
     #[must_use]
     pub fn between<R: Real, const N: usize>(
         self,
@@ -172,13 +176,14 @@ impl Interpolation {
 /// The weights of three points in space, from their weights on the screen.
 ///
 /// ```text
-///             α′/ωa                                  1     α′   β′   γ′
+///             α′/wa                                  1     α′   β′   γ′
 ///     α = ───────────────────────     and with it   ── =  ── + ── + ──
-///         α′/ωa + β′/ωb + γ′/ωc                      ω     ωa   ωb   ωc
+///         α′/wa + β′/wb + γ′/wc                      w     wa   wb   wc
 /// ```
 ///
-/// Where all ω are equal, as under an orthographic projection, nothing changes. Where that cannot be computed, because
-/// an ω or the sum below the line is zero, the weights stay as they are. Source: first note, formulas 4 to 7.
+/// Where all w are equal, as under an orthographic projection, nothing changes. Where that cannot
+/// be computed, because a w or the denominator is zero, the weights stay as they are. Source: first
+/// note, formulas 4 to 7.
 #[must_use]
 pub fn perspective_weights<R: Real>(weights: [R; 3], w: [R; 3]) -> [R; 3] {
     let zero = R::of(0.0);
@@ -191,7 +196,7 @@ pub fn perspective_weights<R: Real>(weights: [R; 3], w: [R; 3]) -> [R; 3] {
 // ANCHOR_END: perspective_weights
 
 // ANCHOR: perspective_correct
-/// Formulas ⑨ and ⑧ of the book (section 5.4):
+/// Formulas ⑨ and ⑧ of the book (section 5.4), which writes ω for w:
 ///
 /// ```text
 ///                 ωa ωb                        ωb Va + (ωa Vb − ωb Va) t′
@@ -210,7 +215,8 @@ fn perspective_correct<R: Real, const N: usize>(
 // ANCHOR_END: perspective_correct
 
 // ANCHOR: reciprocal
-/// The same in the form that most texts give (book, section 5.5.4): interpolate 1/ω and V/ω linearly, then divide.
+/// The same in the form that most texts give (book, section 5.5.4): interpolate 1/w and V/w
+/// linearly, then divide.
 fn reciprocal<R: Real, const N: usize>(a: Projected<R, N>, b: Projected<R, N>, t: R) -> Projected<R, N> {
     let one = R::of(1.0);
     let one_over_w = one / a.w + (one / b.w - one / a.w) * t;
@@ -219,9 +225,9 @@ fn reciprocal<R: Real, const N: usize>(a: Projected<R, N>, b: Projected<R, N>, t
 }
 // ANCHOR_END: reciprocal
 
-/// Emits the pixels of a projected triangle, each with its ω and its values.
+/// Emits the pixels of a projected triangle, each with its w and its values.
 ///
-/// Screen space → (x, y, ω and values). What goes up the sides and along each row by equal steps is the parameter t′;
+/// Screen space → (x, y, w and values). What is stepped up the edges and along each row is the parameter t′;
 /// `interpolation` makes values of it, once for each end of a row and once for each pixel. Source: book, section 5.4,
 /// Figure 5-7.
 pub fn step_parameter<const N: usize>(
@@ -242,7 +248,7 @@ pub fn step_parameter<const N: usize>(
 
 /// The same with a depth that changes linearly on the screen, beside t′ (chapter 7).
 ///
-/// Screen space → (x, y, ω and values, depth). Source: book, section 7.2.
+/// Screen space → (x, y, w and values, depth). Source: book, section 7.2.
 pub fn step_parameter_and_depth<const N: usize>(
     triangle: [ScreenVertex<(Projected<f64, N>, f64)>; 3],
     interpolation: Interpolation,
@@ -275,7 +281,7 @@ fn begin_projected<const N: usize>(
 }
 
 // ANCHOR: step_parameter
-/// Steps t′, and the depth, up the sides of the triangle and along each row.
+/// Steps t′, and the depth, up the edges of the triangle and along each row.
 #[inline]
 fn step_parameter_in<const N: usize>(
     triangle: [DVec2; 3],
@@ -293,7 +299,7 @@ fn step_parameter_in<const N: usize>(
     for (half, points, depths) in
         [(split.lower, lower_points, lower_depths), (split.upper, upper_points, upper_depths)]
     {
-        // Up the sides: t′ goes from 0 at an edge's start to 1 at its end.
+        // Up the edges: t′ goes from 0 at an edge's start to 1 at its end.
         half.step(&EdgeParameter::on(&depths), walk, scissor, |span, [left, right]| {
             // What is at the two ends of the row.
             let [start, end] = ends_of_row(&points, [left.t, right.t], interpolation);
@@ -312,7 +318,7 @@ pub(crate) fn attach_depths(split: &Split, depths: [f64; 3]) -> [Half<f64>; 2] {
     split.attach(depths, |a, b, t| a + (b - a) * t)
 }
 
-/// What is at the two ends of a row, where the parameters on its sides are these.
+/// What is at the two ends of a row, where the parameters on its edges are these.
 #[inline]
 pub(crate) fn ends_of_row<const N: usize>(
     Half { left, right }: &Half<Projected<f64, N>>,
@@ -346,7 +352,7 @@ impl EdgeParameter {
         Half { left: edge(depths.left), right: edge(depths.right) }
     }
 
-    /// At the ends of a row, from what was reached on the two sides.
+    /// At the ends of a row, from what was reached on the two edges.
     #[inline]
     pub(crate) const fn along_row([left, right]: [Self; 2]) -> [Self; 2] {
         [Self { t: 0.0, ..left }, Self { t: 1.0, ..right }]
@@ -549,7 +555,7 @@ mod tests {
             assert_eq!(interpolation.between(a, b, 0.0).values, [0.0]);
             assert!(is_near(interpolation.between(a, b, 1.0).values[0], 8.0, 1.0));
         }
-        // Half the way on the screen is a quarter of the way in space: the far end is squeezed.
+        // The middle on the screen is at a quarter in space: the far end is squeezed.
         assert_eq!(Interpolation::Affine.between(a, b, 0.5), Projected { w: 2.0, values: [4.0] });
         assert_eq!(Interpolation::PerspectiveCorrect.between(a, b, 0.5), Projected { w: 1.5, values: [2.0] });
     }

@@ -47,8 +47,9 @@
 //! | none | the renderer: all of chapters 1 to 10, and the exact rasterizer |
 //! | `tiled` | the fast rasterizer: eight numbers at a time, several threads |
 //! | `files` | models and textures from files, pictures into files |
+//! | `jpeg` | textures from JPEG files, too; with `files` |
 //! | `figure` | the chapters' figures: their tables, the canvas, the history of a pixel; with `files` |
-//! | `program` | what the eleven programs share: arguments, animations; with `figure` |
+//! | `program` | what the eleven programs share: arguments, animations; with `figure` and `jpeg` |
 //! | `window` | a live window, `--window`; with `program` |
 //!
 //! `program` and `tiled` are on by default; a renderer in a program of your own needs neither:

@@ -29,7 +29,7 @@ pub enum StepAxis {
     Longer,
     /// Always x, a mistake.
     ///
-    /// - Cause: on a steep line y moves by more than one pixel from one column to the next.
+    /// - Cause: on a y-major line y moves by more than one pixel from one column to the next.
     /// - Artefact: the line falls apart into dots; a vertical one vanishes.
     /// - Remedy: [`StepAxis::Longer`]. Book, section 2.1, Figure 2-2.
     X,
@@ -49,7 +49,7 @@ pub struct Line {
 /// Emits the pixels of the line from `a` to `b` (screen space, pixels) that lie in the scissor.
 ///
 /// The running coordinate goes up by one from the lower end, the other one by the slope; the pixel is where both are
-/// cut to whole numbers. The right end, of a steep line the upper end, is not drawn: a chain of lines that goes on to the
+/// cut to whole numbers. The right end, of a y-major line the upper end, is not drawn: a chain of lines that goes on to the
 /// right draws no joint twice. Where a chain turns back, its joint may be drawn by neither line.
 ///
 /// ```text
@@ -59,7 +59,7 @@ pub struct Line {
 ///     0 │ # # # . . . .
 /// ```
 ///
-/// From `b` to `a` the pixels are the same: a line always runs from its left end, or from its lower end if it is steep.
+/// From `b` to `a` the pixels are the same: a line always runs from its left end, or from its lower end if it is y-major.
 /// A point that is not finite draws nothing. Source: book, section 2.1.
 pub fn dda(a: DVec2, b: DVec2, axis: StepAxis, scissor: impl Into<Scissor>, mut emit: impl FnMut(i32, i32)) {
     if !(a.is_finite() && b.is_finite()) {
@@ -84,16 +84,16 @@ impl Line {
         (self.b.y - self.a.y) / (self.b.x - self.a.x)
     }
 
-    /// Whether x is stepped by one pixel at a time, not y.
+    /// Whether x is stepped by one pixel at a time, not y: the line is x-major.
     #[must_use]
     pub fn is_x_major(&self) -> bool {
         self.slope().abs() < 1.0 || self.axis == StepAxis::X
     }
 
     // ANCHOR: dda
-    /// Emits the pixels of the line, from left to right or, if it is steep, from bottom to top; `visible` are the columns
-    /// or the rows that can be seen. With each pixel the running coordinate and the other one, before they are cut to
-    /// whole numbers.
+    /// Emits the pixels of the line, from left to right or, if it is y-major, from bottom to top;
+    /// `visible` are the columns or the rows that can be seen. With each pixel the running
+    /// coordinate and the other one, before they are cut to whole numbers.
     pub(crate) fn step(&self, visible: Range<i32>, mut emit: impl FnMut(Pixel, [f64; 2])) {
         let Self { a, b, .. } = *self;
         if self.is_x_major() {
@@ -111,7 +111,8 @@ impl Line {
     }
 }
 
-/// Steps the first coordinate by one while it is below `end`, and the second by `slope`, within `visible`.
+/// Steps the first coordinate by one while it is below `end`, and the second by `slope`, within
+/// `visible`.
 fn step_by_one(
     [mut along, mut across]: [f64; 2],
     end: f64,
@@ -119,7 +120,7 @@ fn step_by_one(
     visible: Range<i32>,
     mut emit: impl FnMut(f64, f64),
 ) {
-    // What lies before the first visible pixel is passed over in one stride.
+    // What lies before the first visible pixel is skipped in one step.
     let skipped = f64::from(visible.start) - along.trunc();
     if skipped > 0.0 {
         along = f64::from(visible.start) + along.fract();

@@ -30,6 +30,12 @@ pub enum Event {
     NextKnob(i32),
     /// Turns the knob that is held by so many steps.
     Turn(i32),
+    /// Sets the knob of this place in the variant's table to a value of its kind; nothing happens if there is none.
+    Set(usize, Value),
+    /// Shows a frame of an animation; beyond the last, the last.
+    Frame(u32),
+    /// Draws in another size, in pixels.
+    Resize((u32, u32)),
     /// Sets all knobs to their defaults, shows the first frame, and magnifies nothing.
     Reset,
     /// Shows another view, or the variant itself if that view is shown already.
@@ -42,6 +48,8 @@ pub enum Event {
     Tick,
     /// Draws with the next rasterizer, where there is a choice.
     NextRasterizer,
+    /// Draws with a rasterizer, where there is a choice.
+    Rasterizer(RasterizerChoice),
     /// Magnifies by so many notches of a wheel around a pixel, or the reverse.
     Magnify(i32, Pixel),
     /// A button goes down at a pixel: takes hold of a point nearby, or of a model.
@@ -183,12 +191,16 @@ impl<'a> Live<'a> {
                 return Ok(false);
             }
             Event::Turn(steps) => self.turn(steps),
+            Event::Set(index, value) => self.set(index, value),
+            Event::Frame(frame) => self.scene.frame = frame.min(self.frames() - 1),
+            Event::Resize(size) => self.scene.size = size,
             Event::Reset => self.reset(),
             Event::Show(view) => self.show(view),
             Event::Run if self.scene.variant.animation.is_some() => self.run(Motion::Frames),
             Event::Run | Event::Sweep => self.run(Motion::Sweep(0)),
             Event::Tick => self.tick(),
             Event::NextRasterizer => self.next_rasterizer(),
+            Event::Rasterizer(choice) => self.draw_with(choice),
             Event::Magnify(notches, pixel) => self.magnify(notches, pixel),
             Event::Press(pixel) => self.press(pixel),
             Event::Drag(pixel) => return Ok(self.drag(pixel)),
@@ -218,6 +230,19 @@ impl<'a> Live<'a> {
         Ok(true)
     }
 
+    /// The knob is held then, so that it is the one that runs.
+    fn set(&mut self, index: usize, value: Value) {
+        if let Some(knob) = self.scene.variant.knobs.get(index) {
+            self.take(index);
+            self.scene.knobs.put(knob.name, value);
+        }
+    }
+
+    /// How many frames there are; 1 of one picture.
+    fn frames(&self) -> u32 {
+        self.scene.variant.animation.map_or(1, |animation| animation.frames)
+    }
+
     fn turn(&mut self, steps: i32) {
         if let Some((knob, value)) = self.knob() {
             self.scene.knobs.put(knob.name, knob.stepped(value, steps));
@@ -245,8 +270,7 @@ impl<'a> Live<'a> {
     fn tick(&mut self) {
         match self.motion {
             Some(Motion::Frames) => {
-                let frames = self.scene.variant.animation.map_or(1, |animation| animation.frames);
-                self.scene.frame = (self.scene.frame + 1) % frames;
+                self.scene.frame = (self.scene.frame + 1) % self.frames();
             }
             Some(Motion::Sweep(step)) => {
                 // There and back again.
@@ -263,10 +287,14 @@ impl<'a> Live<'a> {
     }
 
     fn next_rasterizer(&mut self) {
+        let all = RasterizerChoice::ALL;
+        let place = all.iter().position(|choice| *choice == self.scene.rasterizer).unwrap_or(0);
+        self.draw_with(all[moved(place, 1, all.len())]);
+    }
+
+    fn draw_with(&mut self, choice: RasterizerChoice) {
         if self.scene.variant.rasterizer.is_some() {
-            let all = RasterizerChoice::ALL;
-            let place = all.iter().position(|choice| *choice == self.scene.rasterizer).unwrap_or(0);
-            self.scene.rasterizer = all[moved(place, 1, all.len())];
+            self.scene.rasterizer = choice;
         }
     }
 
@@ -460,6 +488,31 @@ impl<'a> Live<'a> {
         parts.join(" · ")
     }
 
+    /// The command that draws what is shown, not magnified: `cargo run --bin ch05_perspective_correct -- affine --set tilt=60`.
+    #[must_use]
+    pub fn command(&self) -> String {
+        let remedied = self.remedied().filter(|_| self.view == View::Remedy);
+        let Scene { variant, ref knobs, frame, size, rasterizer, .. } =
+            *remedied.as_ref().unwrap_or(&self.scene);
+        let mut words = vec![format!("cargo run --bin {} -- {}", self.chapter.name, variant.name)];
+        words.extend(knobs.changed().iter().map(|setting| format!("--set {setting}")));
+        if frame > 0 {
+            words.push(format!("--frame {frame}"));
+        }
+        if size != variant.size {
+            words.push(format!("--size {}x{}", size.0, size.1));
+        }
+        if variant.rasterizer.is_some_and(|own| own != rasterizer) {
+            words.push(format!("--rasterizer {}", rasterizer.name()));
+        }
+        match self.view {
+            View::Difference => words.push("--compare".to_owned()),
+            View::Overdraw => words.push("--overdraw".to_owned()),
+            View::Itself | View::Remedy => {}
+        }
+        words.join(" ")
+    }
+
     /// A pixel in words: `(60, 120) #00ff00`.
     #[must_use]
     pub fn told((x, y): Pixel, color: Color) -> String {
@@ -544,6 +597,27 @@ mod tests {
         let far = play(live(), &[Event::Turn(-1000)]);
         assert_eq!(seen(&far.picture()).0, 0, "the end of the range");
         assert_eq!(play(live(), &[Event::NextKnob(-1)]).knob().expect("a knob").0.name, "dot");
+    }
+
+    #[test]
+    fn what_is_set_is_shown_and_named_as_a_command() {
+        let set = [Event::Set(0, Value::Number(7.0)), Event::Set(9, Value::Number(1.0))];
+        let set = play(live(), &set);
+        assert_eq!(seen(&set.picture()), (7, Some((5, 6))));
+        assert_eq!(set.command(), "cargo run --bin ch00 -- wrong --set level=7");
+        let compared = play(set, &[Event::Show(View::Difference)]);
+        assert_eq!(compared.command(), "cargo run --bin ch00 -- wrong --set level=7 --compare");
+        let remedied = play(compared, &[Event::Show(View::Remedy), Event::Resize((80, 60))]);
+        assert_eq!(remedied.command(), "cargo run --bin ch00 -- right --set level=7 --size 80x60");
+        let (choice, frame) = (Event::Rasterizer(RasterizerChoice::Exact), Event::Frame(2));
+        let framed = play(live(), &[Event::Variant(2), choice, frame, Event::Show(View::Overdraw)]);
+        assert_eq!(
+            framed.command(),
+            "cargo run --bin ch00 -- moving --frame 2 --rasterizer exact --overdraw"
+        );
+        assert_eq!(play(live(), &[Event::Variant(2), Event::Frame(9)]).scene().frame, 2, "the last one");
+        assert_eq!(play(live(), &[Event::Frame(9)]).scene().frame, 0, "it has no frames");
+        assert_eq!(play(live(), &[choice]).command(), "cargo run --bin ch00 -- wrong", "it has no choice");
     }
 
     #[test]

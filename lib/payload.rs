@@ -1,4 +1,4 @@
-//! Chapter 3: values that change by equal steps, up the two sides of a triangle and along its rows.
+//! Chapter 3: values that change by equal steps, up two edges of a triangle and along its rows.
 //!
 //! Chapter 2 walks up a half and finds the span of each row. Here a *payload* goes along: values in chapter 3, the
 //! parameter t in chapter 5, t and a depth in chapter 7. Takes a payload at the ends of what is walked; gives it at each
@@ -33,11 +33,11 @@ pub enum StepLimit {
     /// - Artefact: values outside the range of the vertices; in a texture, texels from beyond the triangle ("spikes").
     /// - Remedy: [`StepLimit::Edges`] as in the book (chapter 11), or [`StepLimit::Everywhere`].
     Overrun,
-    /// Clamped along the two sides after each row, not along the row: the book's remedy. The last pixel of a row may
+    /// Clamped along the two edges after each row, not along the row: the book's remedy. The last pixel of a row may
     /// still pass the end, and a depth that is stepped beside t is not clamped.
     #[default]
     Edges,
-    /// Clamped along the sides and along the row, depth included: nothing leaves the range of the vertices.
+    /// Clamped along the edges and along the row, depth included: nothing leaves the range of the vertices.
     Everywhere,
 }
 
@@ -120,7 +120,8 @@ impl Split {
 
 // ANCHOR: step
 impl Half {
-    /// Walks up both sides of the half with a payload, and emits each span with the payload at its start and at its end.
+    /// Walks up both edges of the half with a payload, and emits each span with the payload at its
+    /// start and at its end.
     ///
     /// `carried` is the payload at the ends of the half's edges. Source: book, section 3.2.4.
     #[inline]
@@ -141,7 +142,7 @@ impl Half {
     }
 }
 
-/// A payload on its way up one side of a half.
+/// A payload on its way up one edge of a half.
 struct Stepped<P> {
     /// The row that it has reached.
     y: f64,
@@ -175,7 +176,8 @@ impl<P: Payload> Stepped<P> {
 
 impl Span {
     // ANCHOR: span_step
-    /// Steps a payload along the row, from its value at the start to its value at the end, a pixel at a time.
+    /// Steps a payload along the row, from its value at the start to its value at the end, a pixel
+    /// at a time.
     #[inline]
     pub fn step<P: Payload>(&self, from: P, to: P, limit: StepLimit, mut emit: impl FnMut(i32, P)) {
         let columns = self.columns();

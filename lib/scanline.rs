@@ -1,6 +1,6 @@
 //! Chapter 2: filling a triangle row by row.
 //!
-//! Takes three points on the screen, splits the triangle into two halves with a horizontal edge, walks up both sides of
+//! Takes three points on the screen, splits the triangle into two halves with a horizontal edge, walks up two edges of
 //! each half and emits one span of pixels a row: coverage only. What is drawn in a span is the caller's business.
 //!
 //! ```
@@ -22,7 +22,7 @@ use crate::area::{is_drawable, twice_signed_area};
 use crate::rect::Rect;
 use crate::scissor::Scissor;
 
-/// Whether the two sides of a row may pass the ends of their edges.
+/// Whether the two ends of a row may pass the ends of their edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum EdgeWalk {
     /// x stops at the end of its edge. Book, section 2.2, the lines marked green.
@@ -39,7 +39,8 @@ pub enum EdgeWalk {
 // ANCHOR: spans
 /// Emits the spans of a triangle, those of the lower half first. Screen space, in pixels, y up.
 ///
-/// Nothing for a triangle without area or with coordinates that are not finite. Source: book, section 2.2.
+/// Nothing for a triangle without area or with coordinates that are not finite. Source: book,
+/// section 2.2.
 pub fn spans(triangle: [DVec2; 3], edges: EdgeWalk, scissor: impl Into<Scissor>, mut emit: impl FnMut(Span)) {
     let scissor = scissor.into();
     if let Some(Split { lower, upper, .. }) = split(triangle) {
@@ -61,9 +62,9 @@ pub struct Edge<T = DVec2> {
 /// One of the two halves of a triangle: below or above the horizontal line through its middle vertex.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Half<T = DVec2> {
-    /// The side at which the rows begin.
+    /// The edge at which the rows begin.
     pub left: Edge<T>,
-    /// The side at which the rows end.
+    /// The edge at which the rows end.
     pub right: Edge<T>,
 }
 
@@ -83,7 +84,8 @@ pub struct Split {
 }
 
 // ANCHOR: split
-/// Splits a triangle at the height of its middle vertex P₂; the new point P′ lies on the long edge P₁P₃.
+/// Splits a triangle at the height of its middle vertex P₂; the new point P′ lies on the long edge
+/// P₁P₃.
 ///
 /// ```text
 ///             P₃
@@ -97,7 +99,8 @@ pub struct Split {
 ///                       P₁
 /// ```
 ///
-/// `None` for a triangle without area or with coordinates that are not finite. Source: book, section 2.2, Figure 2-3.
+/// `None` for a triangle without area or with coordinates that are not finite. Source: book,
+/// section 2.2, Figure 2-3.
 #[must_use]
 pub fn split(triangle: [DVec2; 3]) -> Option<Split> {
     let [a, b, c] = triangle;
@@ -161,16 +164,18 @@ impl Half {
     }
 
     // ANCHOR: walk
-    /// Walks up both sides of the half, a row at a time, and emits the span between them.
+    /// Walks up the left and the right edge of the half, a row at a time, and emits the span
+    /// between them.
     ///
-    /// Rows run from trunc(y) of the lower end while y is below the upper end. Source: book, section 2.2.
+    /// Rows run from trunc(y) of the lower end while y is below the upper end. Source: book,
+    /// section 2.2.
     #[inline]
     pub(crate) fn walk(&self, edges: EdgeWalk, scissor: Rect, mut emit: impl FnMut(Span)) {
         let (mut left, mut right) = (Side::new(&self.left), Side::new(&self.right));
         let top = self.left.end.y.min(f64::from(scissor.top));
         let mut y = self.left.start.y.trunc();
 
-        // What lies below the scissor is passed over in one stride.
+        // What lies below the scissor is skipped in one step.
         let skipped = f64::from(scissor.bottom) - y;
         if skipped > 0.0 {
             left.step(skipped);
@@ -193,7 +198,7 @@ impl Half {
 }
 
 // ANCHOR: side
-/// One side of a half while the walk goes up: its x at the running row.
+/// The left or the right edge of a half while the walk goes up: its x at the current row.
 struct Side {
     x: f64,
     slope: f64,

@@ -25,7 +25,7 @@ pub enum AddressMode {
     /// The nearest texel at the border.
     #[default]
     Clamp,
-    /// The picture again, side by side, without end.
+    /// The picture again and again, without end.
     Repeat,
     /// The picture and its mirror image by turns, so that no seam shows.
     Mirror,
@@ -143,7 +143,8 @@ impl Texture {
     }
 
     // ANCHOR: nearest
-    /// The texel that (u, v) falls into: column ⌊u · width⌋, row ⌊v · height⌋, as channels in 0..=255. Book, section 3.3.
+    /// The texel that (u, v) falls into: column ⌊u · width⌋, row ⌊v · height⌋, as channels in
+    /// 0..=255. Book, section 3.3.
     ///
     /// The book's early programs read past the array at u = 1; the address mode decides here.
     #[must_use]

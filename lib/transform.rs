@@ -1,6 +1,6 @@
 //! Chapters 4, 8 and 10: projection, frustum and viewport, matrices: from the model onto the screen.
 //!
-//! Takes points in camera space and gives them in homogeneous coordinates (x, y, z, ω), the first stage of the data
+//! Takes points in camera space and gives them in homogeneous coordinates (x, y, z, w), the first stage of the data
 //! flow; the perspective divide then makes screen coordinates of them.
 //!
 //! ```
@@ -19,7 +19,8 @@ use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 use crate::rect::Rect;
 
 // ANCHOR: perspective
-/// Perspective projection onto the plane z = `near`: camera space → homogeneous coordinates (n x, n y, n z, z).
+/// Perspective projection onto the image plane z = `near`: camera space → homogeneous coordinates
+/// (n x, n y, n z, z).
 ///
 /// ```text
 ///          x │         ╱ (x, z)        similar triangles:
@@ -27,11 +28,12 @@ use crate::rect::Rect;
 ///            │   x′╱                       x′ = n x / z
 ///            │ . ╱ ┊
 ///            └─────┊────────── z       the division waits:
-///            O     n                       (n x, n y, n z, z) with ω = z
+///            O     n                       (n x, n y, n z, z) with w = z
 /// ```
 ///
-/// The result is not yet divided: ω keeps the distance, which chapter 5 needs. After the divide z is n for every point,
-/// which says nothing; chapter 6 puts a depth there. Source: book, sections 4.2.2 and 4.2.3.
+/// The result is not yet divided: w (the book's ω) keeps the distance, which chapter 5 needs. After
+/// the divide z is n for every point, which says nothing; chapter 6 puts a depth there. Source:
+/// book, sections 4.2.2 and 4.2.3.
 #[must_use]
 pub fn perspective(view: DVec3, near: f64) -> DVec4 {
     DVec4::new(view.x * near, view.y * near, view.z * near, view.z)
@@ -44,7 +46,7 @@ pub fn orthographic(view: DVec3) -> DVec4 {
     view.extend(1.0)
 }
 
-/// The perspective divide: homogeneous coordinates → (x/ω, y/ω, z/ω). Not finite for ω = 0.
+/// The perspective divide: homogeneous coordinates → (x/w, y/w, z/w). Not finite for w = 0.
 #[must_use]
 #[inline]
 pub fn perspective_divide(clip: DVec4) -> DVec3 {
@@ -341,7 +343,7 @@ pub fn look_at(eye: DVec3, target: DVec3, up: DVec3) -> DMat4 {
 
 /// The matrix for normals that belongs to a matrix for points: the inverse of its transpose.
 ///
-/// A normal n stands upright on every direction t of a surface, n·t = 0. When t becomes M t, n must become
+/// A normal n is perpendicular to every direction t of a surface, n·t = 0. When t becomes M t, n must become
 /// (M⁻¹)ᵀ n, since ((M⁻¹)ᵀ n)·(M t) = n·(M⁻¹ M t) = n·t. For rotations that is M itself. Not finite if M flattens
 /// space. Source: fourth note, transformation of normals.
 #[must_use]

@@ -1,4 +1,4 @@
-//! Chapter 9, beyond the book: interpolation by weights, corrected by ω, for rasterizers that know where in a triangle they are.
+//! Chapter 9, beyond the book: interpolation by weights, corrected by w, for rasterizers that know where in a triangle they are.
 //!
 //! Chapter 3 finds weights by areas, chapter 5 corrects a parameter along a row; here the weights themselves are
 //! corrected. Takes what the vertices of a triangle carry and weights on the screen; gives varyings, the depth, and how
@@ -43,20 +43,20 @@ pub fn weight_gradients<R: Real>([a, b, c]: [DVec2; 3]) -> WeightGradients<R> {
 }
 
 // ANCHOR: triangle_varyings
-/// What changes linearly on the screen: what a vertex carries, divided by ω; the same at a point between vertices; or how
+/// What changes linearly on the screen: what a vertex carries, divided by w; the same at a point between vertices; or how
 /// much all of it changes from there to another point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinearVaryings<R, const N: usize> {
-    /// 1/ω; for [`Interpolation::Affine`] ω itself.
+    /// 1/w; for [`Interpolation::Affine`] w itself.
     pub distance: R,
     /// The depth.
     pub depth: R,
-    /// V/ω; for [`Interpolation::Affine`] V itself.
+    /// V/w; for [`Interpolation::Affine`] V itself.
     pub values: [R; N],
 }
 
 impl<R: Real, const N: usize> LinearVaryings<R, N> {
-    /// At a vertex: divides what is to be interpolated by ω. All triangles that meet there can share it.
+    /// At a vertex: divides what is to be interpolated by w. All triangles that meet there can share it.
     #[must_use]
     #[inline]
     pub fn new(vertex: &NdcVertex<N>, interpolation: Interpolation) -> Self {
@@ -88,7 +88,7 @@ impl<R: Real, const N: usize> LinearVaryings<R, N> {
         self.with(change, |value, change| value + change * times)
     }
 
-    /// Multiplies by ω again: what was interpolated linearly becomes ω and values.
+    /// Multiplies by w again: what was interpolated linearly becomes w and values.
     #[must_use]
     #[inline]
     pub fn multiplied(self, interpolation: Interpolation) -> Projected<R, N> {
@@ -103,7 +103,7 @@ impl<R: Real, const N: usize> LinearVaryings<R, N> {
 
     /// How the varyings change at a point, if this is how they change linearly from there to the next pixel.
     ///
-    /// From V = (V/ω) / (1/ω) by the quotient rule: ∂V = ω (∂(V/ω) − V ∂(1/ω)).
+    /// From V = (V/w) / (1/w) by the quotient rule: ∂V = w (∂(V/w) − V ∂(1/w)).
     #[must_use]
     #[inline]
     pub fn derivative(&self, point: &Projected<R, N>, interpolation: Interpolation) -> [R; N] {
@@ -150,7 +150,7 @@ impl<R: Real, const N: usize> TriangleVaryings<R, N> {
         self.to_second.with(&self.to_third, |to_second, to_third| to_second * second + to_third * third)
     }
 
-    /// ω and the varyings where the second and the third vertex have these weights.
+    /// w and the varyings where the second and the third vertex have these weights.
     #[must_use]
     #[inline]
     pub fn at(&self, weights: [R; 2]) -> Projected<R, N> {

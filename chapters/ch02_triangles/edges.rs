@@ -1,4 +1,4 @@
-//! Triangles by edge functions: for each pixel, on which side of the three edges is its center?
+//! Triangles by edge functions: for each pixel, on which side of each edge is its center?
 
 use glam::{DVec2, dvec2};
 use rasterbook::exact::edge::Coverage;
@@ -14,7 +14,7 @@ pub(super) const BOUNDING_BOX: &[Knob] = &[
     Knob::point(
         "a",
         [84.8, 73.6],
-        "make the triangle long and aslant: most pixels of the box are asked in vain",
+        "make the triangle long and slanted: most pixels of the box are tested in vain",
     ),
     Knob::point(
         "b",
@@ -29,7 +29,8 @@ pub(super) const BOUNDING_BOX: &[Knob] = &[
 ];
 
 // ANCHOR: bounding_box
-/// All pixels of the box around a triangle. An edge that has a pixel on its wrong side gives it a tint.
+/// All pixels of the box around a triangle. An edge that has a pixel on its wrong side gives it a
+/// tint.
 pub(super) fn bounding_box(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     let triangle = ["a", "b", "c"].map(|name| knobs.point(name) / FACTOR);
     picture::draw_enlarged(framebuffer, (40, 30), |screen| {
@@ -57,7 +58,8 @@ type Rule = fn([DVec2; 3], Scissor, &mut dyn FnMut(i32, i32));
 
 /// How often each pixel is drawn when six triangles round a center make up a hexagon.
 fn hexagon(framebuffer: &mut Framebuffer, center: DVec2, rule: Rule) {
-    // Every vertex lies on the center of a pixel, and so do many pixels on the seams between two triangles.
+    // Every vertex lies on the center of a pixel, and so do many pixels on the seams between two
+    // triangles.
     let rim =
         [(35.5, 14.5), (27.5, 26.5), (11.5, 26.5), (3.5, 14.5), (11.5, 2.5), (27.5, 2.5)].map(DVec2::from);
     picture::draw_enlarged(framebuffer, (40, 30), |screen| {
@@ -93,7 +95,8 @@ pub(super) fn shared_edge(framebuffer: &mut Framebuffer, knobs: &Knobs) {
 // ANCHOR_END: shared_edge
 
 // ANCHOR: top_left
-/// The pixels whose centers are inside; one on a shared edge belongs to one side, by the top-left rule.
+/// The pixels whose centers are inside; one on a shared edge belongs to one triangle, by the top-left
+/// rule.
 fn by_centers(triangle: [DVec2; 3], scissor: Scissor, emit: &mut dyn FnMut(i32, i32)) {
     let Some(coverage) = Coverage::new(triangle) else { return };
     coverage.pixels(scissor).for_each(|(x, y, _)| emit(x, y));

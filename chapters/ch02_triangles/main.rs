@@ -1,10 +1,10 @@
 //! # Chapter 2, second part: triangles
 //!
 //! **Which pixels belong to a triangle?** Everything that follows is made of triangles. One is filled row by row:
-//! split it at its middle vertex, walk up the two sides of each half, and fill what lies between them.
+//! split it at its middle vertex, walk up two edges of each half, and fill what lies between them.
 //!
 //! New here: signed area (`lib/area.rs`) and the scanline walk (`lib/scanline.rs`), which emits spans and knows no
-//! color. Beyond the book: edge functions (`lib/exact/edge.rs`), which ask for each pixel whether it is inside, and several
+//! color. Beyond the book: edge functions (`lib/exact/edge.rs`), which test each pixel for coverage, and several
 //! samples in a pixel (`lib/exact/samples.rs`). The figures: `scanlines.rs`, `edges.rs`, `samples.rs`. Book: section 2.2.
 
 mod edges;
@@ -31,7 +31,7 @@ pub(crate) const CHAPTER: Chapter = Chapter {
             "overshoot",
             scanlines::overshoot,
             scanlines::TREE,
-            "rows that shoot out of the tree wherever an edge is nearly level",
+            "rows that shoot out of the tree wherever an edge is nearly horizontal",
         )
         .source("section 2.2, Figure 2-4")
         .size(320, 320)
@@ -56,16 +56,16 @@ pub(crate) const CHAPTER: Chapter = Chapter {
             .size(784, 288),
         Variant::with_knobs("bounding-box", edges::bounding_box, edges::BOUNDING_BOX, "the box around a triangle: outside, the tint says which edge has the pixel on its wrong side; where none has is the triangle")
             .source("second, third and fourth note"),
-        Variant::with_knobs("one-sample", samples::one_sample, samples::SCENE, "one sample in the middle of each pixel: stairs along the edges, a broken line where triangles pierce each other, and a false pattern where stripes are narrower than pixels")
+        Variant::with_knobs("one-sample", samples::one_sample, samples::SCENE, "one sample in the middle of each pixel: jaggies along the edges, a broken line where triangles pierce each other, and moiré where stripes are narrower than pixels")
         .size(560, 420),
         Variant::with_knobs("supersampled", samples::supersampled, samples::SCENE, "2×2 samples a pixel, each with its own color and depth, averaged: three shades along every edge; the stripes become an uneven gray")
         .size(560, 420)
             .source("fourth note"),
-        Variant::with_knobs("supersampled-16", samples::supersampled_16, samples::SCENE, "4×4 samples a pixel: smoother still; of the stripes' false pattern a faint rest is left")
+        Variant::with_knobs("supersampled-16", samples::supersampled_16, samples::SCENE, "4×4 samples a pixel: smoother still; a faint moiré is left of the stripes")
         .size(560, 420),
-        Variant::with_knobs("multisampled", samples::multisampled, samples::SCENE, "four samples a pixel for coverage and depth, one color for all of them: smooth edges, but the false pattern of the stripes is back")
+        Variant::with_knobs("multisampled", samples::multisampled, samples::SCENE, "four samples a pixel for coverage and depth, one color for all of them: smooth edges, but the moiré of the stripes is back")
         .size(560, 420),
-        Variant::of_model_in_plane("facets", scanlines::facets, ["pawn.obj", "wood.png"], "a model of flat triangles, each as bright as it faces us; those that turn their back are left out")
+        Variant::of_model_in_plane("facets", scanlines::facets, ["pawn.obj", "wood.png"], "a model of flat triangles, each as bright as it faces us; back faces are left out")
             .size(480, 480),
     ],
 };

@@ -1,4 +1,4 @@
-//! Several samples in a pixel: stairs become shades.
+//! Several samples in a pixel: jaggies become shades.
 
 use glam::dvec2;
 use rasterbook::exact::edge::{Coverage, Subpixel, center};
@@ -6,7 +6,7 @@ use rasterbook::exact::samples::{CENTER, GRID_2X2, GRID_4X4, Pattern, ROTATED_4,
 use rasterbook::figure::{Knob, Knobs, picture};
 use rasterbook::{Color, Framebuffer};
 
-/// A triangle that lies aslant in space: x and y on the screen, and a depth; how it is painted.
+/// A triangle in space: x and y on the screen, and a depth; how it is painted.
 struct Patch {
     vertices: [[f64; 3]; 3],
     paint: Paint,
@@ -33,7 +33,7 @@ impl Patch {
 /// How often the color of a pixel is computed.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Shading {
-    /// For each sample, at its place.
+    /// For each sample, at its position.
     PerSample,
     /// Once, at the center of the pixel.
     PerPixel,
@@ -43,7 +43,7 @@ enum Shading {
 /// Draws a patch: coverage and depth for each sample, color as often as `shading` says.
 fn draw(samples: &mut Samples<'_>, patch: &Patch, shading: Shading) {
     let coverage = Coverage::new(patch.vertices.map(|[x, y, _]| dvec2(x, y))).expect("a triangle with area");
-    // The weights of the three vertices at a place on the screen.
+    // The weights of the three vertices at a point of the screen.
     let weights = |place: Subpixel| {
         let [second, third]: [f64; 2] = coverage.weights(coverage.edge_values(place));
         [1.0 - second - third, second, third]
@@ -70,8 +70,8 @@ pub(super) const SCENE: &[Knob] = &[Knob::number(
 )];
 
 // ANCHOR: samples_scene
-/// A blue triangle and an orange one that pierce each other, narrow stripes, and thin spokes; all of them are
-/// shifted to the right by a part of a pixel.
+/// A blue triangle and an orange one that pierce each other, narrow stripes, and thin spokes; all
+/// of them are shifted to the right by a fraction of a pixel.
 fn scene(framebuffer: &mut Framebuffer, pattern: &Pattern, shading: Shading, shift: f64) {
     let (blue, orange) = (Color::rgb(70, 120, 220), Color::rgb(240, 150, 50));
     let (light, dark) = (Color::rgb(230, 230, 220), Color::rgb(30, 40, 50));

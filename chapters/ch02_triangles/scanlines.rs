@@ -1,4 +1,4 @@
-//! Triangles by rows: split at the middle vertex, walk up both sides, fill what lies between.
+//! Triangles by rows: split at the middle vertex, walk up both edges, fill what lies between.
 
 use glam::{DVec2, DVec3, dvec2};
 use rasterbook::figure::{Fit, Knob, Knobs, Subject};
@@ -27,7 +27,7 @@ pub(super) const FLAT: &[Knob] = &[
     Knob::point(
         "c",
         [300.0, 0.0],
-        "move it by parts of a pixel: a row ends with the pixel in which its end lies",
+        "move it by fractions of a pixel: a row ends with the pixel in which its end lies",
     ),
 ];
 
@@ -90,8 +90,8 @@ pub(super) fn clamped(framebuffer: &mut Framebuffer, knobs: &Knobs) {
 }
 
 // ANCHOR: tree
-/// A fir tree. Each layer's base is level but for twice the tilt. If that is two thousandths of a pixel, one
-/// step of y moves x by 30,000 to 100,000, in a larger picture by more.
+/// A fir tree. Each layer's base is horizontal but for twice the tilt. If that is two thousandths
+/// of a pixel, one step of y moves x by 30,000 to 100,000, in a larger picture by more.
 fn tree(framebuffer: &mut Framebuffer, edges: EdgeWalk, tilt: f64) {
     let fit = Fit::new(framebuffer.rect(), [320.0, 320.0]);
     for i in 0..6 {
@@ -100,7 +100,8 @@ fn tree(framebuffer: &mut Framebuffer, edges: EdgeWalk, tilt: f64) {
         let [left, right, top] =
             [(160.0 - half_width, base), (160.0 + half_width, base), (160.0, base + 70.0)]
                 .map(|vertex| fit.at(vertex.into()));
-        // The base is on a whole row, whatever the size; its lower end is now on the left, now on the right.
+        // The base is on a whole row, whatever the size; its lower end is now on the left, now on
+        // the right.
         let (base, tilt) = (left.y.round(), if i % 2 == 0 { tilt } else { -tilt });
         let triangle = [dvec2(left.x, base - tilt), dvec2(right.x, base + tilt), top];
         fill(framebuffer, triangle, edges, Color::rgb(20, 90 + 22 * i, 50));
@@ -121,7 +122,7 @@ pub(super) fn facets(framebuffer: &mut Framebuffer, subject: &Subject) {
 
     let fit = Fit::new(framebuffer.rect(), [480.0, 480.0]);
     for [a, b, c] in triangles {
-        // The part of a face's normal that points to us: the cosine of the angle at which we see it.
+        // How much of a face's normal points to us: the cosine of the angle at which we see it.
         let facing = -(c - a).cross(b - a).normalize_or_zero().z;
         if facing > 0.0 {
             let triangle = [a, b, c].map(|point| fit.at(dvec2(240.0, 240.0) + point.truncate() * 135.0));

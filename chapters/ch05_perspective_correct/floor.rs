@@ -27,8 +27,8 @@ pub(super) const FLOOR: &[Knob] = &[
 ];
 
 // ANCHOR: floor
-/// A checkered floor from below our feet to far away. In each direction it is cut into so many pieces, each of
-/// two triangles.
+/// A checkered floor from below our feet to far away. In each direction it is cut into so many
+/// pieces, each of two triangles.
 fn checkered_floor(framebuffer: &mut Framebuffer, knobs: &Knobs, interpolation: Interpolation) {
     let fit = Fit::new(framebuffer.rect(), [640.0, 480.0]);
     framebuffer.clear(Color::rgb(70, 90, 70));

@@ -26,22 +26,23 @@ pub(super) const TILTED: &[Knob] = &[
         100.0,
         [60.0, 400.0],
         "",
-        "without the correction, less is wrong from farther away: the sides differ less in their distance",
+        "without the correction, less is wrong from farther away: the edges differ less in their distance",
     ),
     Knob::whole(
         "texels",
         2,
         [2, 16],
         "",
-        "without the correction the level lines break, and the upright ones do not crowd together",
+        "without the correction the horizontal lines break, and the vertical ones do not crowd together",
     ),
 ];
 
-/// The distance of the projection plane in the book's scenes of this chapter.
+/// The distance of the image plane in the book's scenes of this chapter.
 const NEAR: f64 = 80.0;
 
 // ANCHOR: vertex
-/// Projects a point with its texture coordinates. Screen coordinates are what the divide gives, and ω is kept.
+/// Projects a point with its texture coordinates. Screen coordinates are what the divide gives, and
+/// w is kept.
 pub(super) fn vertex([x, y, z]: [f64; 3], uv: [f64; 2]) -> ScreenVertex<Projected<f64, 2>> {
     let clip = perspective(dvec3(x, y, z), NEAR);
     ScreenVertex {
@@ -54,8 +55,8 @@ pub(super) fn vertex([x, y, z]: [f64; 3], uv: [f64; 2]) -> ScreenVertex<Projecte
 type Triangle = [ScreenVertex<Projected<f64, 2>>; 3];
 
 // ANCHOR: square_geometry
-/// A square of two triangles, its left side at a distance, its right side turned away from us by an angle in
-/// degrees.
+/// A square of two triangles, its left edge at a distance, its right edge turned away from us by an
+/// angle in degrees.
 fn square_at(distance: f64, tilt: f64) -> [Triangle; 2] {
     let (sin, cos) = libm::sincos(tilt * PI / 180.0);
     let (x, z) = (480.0 * cos, distance + 480.0 * sin);
@@ -112,7 +113,7 @@ pub(super) fn reciprocal(framebuffer: &mut Framebuffer, knobs: &Knobs) {
 // ANCHOR_END: textured
 
 // ANCHOR: barycentric
-/// The tilted square by weights, pixel by pixel; the weights of areas are corrected by ω.
+/// The tilted square by weights, pixel by pixel; the weights of areas are corrected by w.
 pub(super) fn barycentric(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     let fit = Fit::new(framebuffer.rect(), [640.0, 480.0]);
     let (triangles, texture) = tilted_square(knobs);
@@ -130,7 +131,7 @@ pub(super) fn barycentric(framebuffer: &mut Framebuffer, knobs: &Knobs) {
 // ANCHOR_END: barycentric
 
 // ANCHOR: facing
-/// Draws triangles as chapter 3 does: values by equal steps on the screen, ω unused.
+/// Draws triangles as chapter 3 does: values by equal steps on the screen, w unused.
 fn textured_as_before(framebuffer: &mut Framebuffer, triangles: &[Triangle]) {
     let fit = Fit::new(framebuffer.rect(), [640.0, 480.0]);
     let texture = Texture::book();

@@ -3,6 +3,7 @@
 //! What is in `assets/` is what [`generate`] writes; the programs carry the files inside, so that they find them from
 //! any working directory.
 
+use std::borrow::Cow;
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
 use std::sync::{Mutex, PoisonError};
@@ -13,7 +14,9 @@ use image::ImageFormat;
 use super::glyphs::{DIGITS, glyph};
 use super::picture::enlarged;
 use crate::color::Color;
-use crate::files::{FileError, decode_texture};
+use crate::files::FileError;
+#[cfg(not(target_family = "wasm"))]
+use crate::files::decode_texture;
 use crate::framebuffer::Framebuffer;
 use crate::model::{Model, NormalStyle};
 use crate::rect::Rect;
@@ -21,6 +24,7 @@ use crate::save::encode;
 use crate::texture::Texture;
 
 /// Names one file of `assets/` and carries its bytes.
+#[cfg(not(target_family = "wasm"))]
 macro_rules! asset {
     ($name:literal) => {
         ($name, include_bytes!(concat!("../../assets/", $name)).as_slice())
@@ -28,6 +32,7 @@ macro_rules! asset {
 }
 
 /// The files that the programs carry.
+#[cfg(not(target_family = "wasm"))]
 const FILES: [(&str, &[u8]); 8] = [
     asset!("cube.obj"),
     asset!("sphere.obj"),
@@ -39,9 +44,20 @@ const FILES: [(&str, &[u8]); 8] = [
     asset!("wood.png"),
 ];
 
-fn bytes_of(name: &str) -> Result<&'static [u8], FileError> {
+#[cfg(not(target_family = "wasm"))]
+fn bytes_of(name: &str) -> Result<Cow<'static, [u8]>, FileError> {
     let file = FILES.iter().find(|(file, _)| *file == name);
-    file.map(|(_, bytes)| *bytes).ok_or_else(|| FileError::new(name.as_ref(), "is not in assets/"))
+    file.map(|(_, bytes)| Cow::Borrowed(*bytes)).ok_or_else(|| missing(name))
+}
+
+/// Where a page has to be sent, the generator is sent and not what it makes, which is twenty times as long.
+#[cfg(target_family = "wasm")]
+fn bytes_of(name: &str) -> Result<Cow<'static, [u8]>, FileError> {
+    model_text(name).map(|text| Cow::Owned(text.into_bytes())).ok_or_else(|| missing(name))
+}
+
+fn missing(name: &str) -> FileError {
+    FileError::new(name.as_ref(), "is not in assets/")
 }
 
 /// A model of `assets/`, such as `cube.obj`.
@@ -59,7 +75,7 @@ pub fn model(name: &str) -> Result<Model, FileError> {
 pub fn model_with(name: &str, style: NormalStyle) -> Result<Model, FileError> {
     static READ: Read<(String, NormalStyle), Model> = Mutex::new(Vec::new());
     once(&READ, (name.to_owned(), style), || {
-        Model::parse(bytes_of(name)?, name.as_ref(), style).map(|(model, _)| model)
+        Model::parse(&bytes_of(name)?, name.as_ref(), style).map(|(model, _)| model)
     })
 }
 
@@ -69,9 +85,17 @@ pub fn model_with(name: &str, style: NormalStyle) -> Result<Model, FileError> {
 /// If there is no such texture.
 pub fn texture(name: &str) -> Result<Texture, FileError> {
     static READ: Read<String, Texture> = Mutex::new(Vec::new());
-    once(&READ, name.to_owned(), || {
-        decode_texture(bytes_of(name)?, name.as_ref()).map(|(texture, _)| texture)
-    })
+    once(&READ, name.to_owned(), || read_texture(name))
+}
+
+#[cfg(not(target_family = "wasm"))]
+fn read_texture(name: &str) -> Result<Texture, FileError> {
+    decode_texture(&bytes_of(name)?, name.as_ref()).map(|(texture, _)| texture)
+}
+
+#[cfg(target_family = "wasm")]
+fn read_texture(name: &str) -> Result<Texture, FileError> {
+    made_texture(name).ok_or_else(|| missing(name))
 }
 
 /// What has been read already, by name: reading a file takes longer than drawing a picture with it.
@@ -95,17 +119,48 @@ fn once<K: PartialEq, T: Clone>(
 /// All files of `assets/` but its page: names and contents.
 #[must_use]
 pub fn generate() -> Vec<(&'static str, Vec<u8>)> {
-    let picture = |framebuffer: Framebuffer| encode(&framebuffer, ImageFormat::Png).unwrap_or_default();
-    vec![
-        ("cube.obj", cube().into_bytes()),
-        ("sphere.obj", sphere().into_bytes()),
-        ("pawn.obj", pawn().into_bytes()),
-        ("letters.png", picture(letters())),
-        ("numbers.png", picture(numbers())),
-        ("bricks.png", picture(bricks())),
-        ("bricks-normals.png", picture(bricks_normals())),
-        ("wood.png", picture(wood())),
-    ]
+    let png = |picture: Framebuffer| encode(&picture, ImageFormat::Png).unwrap_or_default();
+    let of = |name| model_text(name).map(String::into_bytes).or_else(|| picture(name).map(png));
+    NAMES.into_iter().filter_map(|name| Some((name, of(name)?))).collect()
+}
+
+/// The texture that the generator makes: that of the file of this name.
+#[must_use]
+pub fn made_texture(name: &str) -> Option<Texture> {
+    let picture = picture(name)?;
+    let rows: Vec<&[Color]> = picture.rows_from_top().collect();
+    Some(Texture::new(picture.width(), picture.height(), rows.into_iter().rev().flatten().copied().collect()))
+}
+
+const NAMES: [&str; 8] = [
+    "cube.obj",
+    "sphere.obj",
+    "pawn.obj",
+    "letters.png",
+    "numbers.png",
+    "bricks.png",
+    "bricks-normals.png",
+    "wood.png",
+];
+
+fn model_text(name: &str) -> Option<String> {
+    match name {
+        "cube.obj" => Some(cube()),
+        "sphere.obj" => Some(sphere()),
+        "pawn.obj" => Some(pawn()),
+        _ => None,
+    }
+}
+
+fn picture(name: &str) -> Option<Framebuffer> {
+    match name {
+        "letters.png" => Some(letters()),
+        "numbers.png" => Some(numbers()),
+        "bricks.png" => Some(bricks()),
+        "bricks-normals.png" => Some(bricks_normals()),
+        "wood.png" => Some(wood()),
+        _ => None,
+    }
 }
 
 /// A cube of side 2 about (0, 0, −4), each face with the whole texture upright on it.

@@ -37,6 +37,17 @@ impl Chapter {
     }
 }
 
+/// What a chapter's `main` calls is in `program`. Where a chapter is drawn by something else, such as a page, there are no
+/// arguments to be read, and nothing calls it.
+#[cfg(not(feature = "program"))]
+impl Chapter {
+    /// Does nothing, and fails.
+    #[must_use]
+    pub const fn main(&self) -> std::process::ExitCode {
+        std::process::ExitCode::FAILURE
+    }
+}
+
 /// One picture that a chapter can draw: a row of its table.
 #[derive(Debug)]
 pub struct Variant {

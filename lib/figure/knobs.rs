@@ -339,15 +339,26 @@ impl Knobs {
     /// # Errors
     /// If the text has another form, no knob has this name, or its range does not hold the value.
     pub fn set(&mut self, text: &str) -> Result<(), KnobError> {
+        let (index, value) = self.read(text)?;
+        self.values[index] = value;
+        Ok(())
+    }
+
+    /// Which knob a text NAME=VALUE names, by its place in the table, and the value.
+    ///
+    /// # Errors
+    /// As [`Self::set`].
+    pub fn read(&self, text: &str) -> Result<(usize, Value), KnobError> {
         let (name, value) = text.split_once('=').ok_or_else(|| KnobError::Form(text.to_owned()))?;
-        let knob = self.find(name).ok_or_else(|| KnobError::Unknown(name.to_owned()))?;
+        let index = self.knobs.iter().position(|knob| knob.name == name);
+        let index = index.ok_or_else(|| KnobError::Unknown(name.to_owned()))?;
+        let knob = &self.knobs[index];
         let parsed = knob.parse(value, self.size).ok_or_else(|| KnobError::Value {
             name: knob.name,
             text: value.to_owned(),
             range: knob.range(),
         })?;
-        self.put(name, parsed);
-        Ok(())
+        Ok((index, parsed))
     }
 
     /// Sets a knob to a value of its kind; a point is brought into the picture. Does nothing if no knob has this name.

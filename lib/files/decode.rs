@@ -4,12 +4,7 @@ use std::io::Cursor;
 use std::path::Path;
 
 use image::metadata::Orientation;
-use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, Rgb, RgbImage, Rgba};
-use zune_jpeg::JpegDecoder;
-use zune_jpeg::errors::DecodeErrors;
-use zune_jpeg::zune_core::bytestream::ZCursor;
-use zune_jpeg::zune_core::colorspace::ColorSpace;
-use zune_jpeg::zune_core::options::DecoderOptions;
+use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, Rgb, Rgba};
 
 use super::orientation::{exif_of_png, of_exif};
 use super::{FileError, MAX_TEXELS};
@@ -37,10 +32,10 @@ pub(super) fn decode_within(
         .ok_or_else(|| FileError::new(path, "is no image that can be read here (PNG, BMP, TGA, JPEG)"))?;
     let judge =
         |size| check_size(size, bytes.len() as u64, max_texels).map_err(|cause| FileError::new(path, cause));
-    let image = if format == ImageFormat::Jpeg {
-        decode_jpeg(bytes, path, judge)
-    } else {
-        decode(bytes, format, path, judge)
+    let image = match format {
+        #[cfg(feature = "jpeg")]
+        ImageFormat::Jpeg => super::jpeg::decode(bytes, path, judge),
+        _ => decode(bytes, format, path, judge),
     };
     Ok((texture_of(&image?), format))
 }
@@ -67,34 +62,14 @@ fn decode(
     })
 }
 
-/// Decodes JPEG files, and turns them upright by the orientation that a camera left in them (EXIF).
-fn decode_jpeg(
-    bytes: &[u8],
-    path: &Path,
-    judge: impl Fn((u32, u32)) -> Result<(), FileError>,
-) -> Result<DynamicImage, FileError> {
-    let failure = |error: DecodeErrors| FileError::from_source(path, error);
-    let damaged = |cause: &str| FileError::new(path, cause);
-    let side = Framebuffer::MAX_SIDE as usize;
-    let options = DecoderOptions::default()
-        .jpeg_set_out_colorspace(ColorSpace::RGB)
-        .set_strict_mode(false)
-        .set_max_width(side)
-        .set_max_height(side);
-    let mut decoder = JpegDecoder::new_with_options(ZCursor::new(bytes), options);
-    decoder.decode_headers().map_err(failure)?;
-    let (width, height) = decoder.dimensions().ok_or_else(|| damaged("has no size"))?;
-    let size = (width as u32, height as u32);
-    judge(size)?;
-    let pixels = decoder.decode().map_err(failure)?;
-    let image = RgbImage::from_raw(size.0, size.1, pixels).ok_or_else(|| damaged("has too few pixels"))?;
-    let mut image = DynamicImage::from(image);
-    image.apply_orientation(decoder.exif().map_or(Orientation::NoTransforms, |exif| of_exif(exif)));
-    Ok(image)
-}
-
-const READABLE: [ImageFormat; 5] =
-    [ImageFormat::Png, ImageFormat::Bmp, ImageFormat::Tga, ImageFormat::Jpeg, ImageFormat::Pnm];
+const READABLE: &[ImageFormat] = &[
+    ImageFormat::Png,
+    ImageFormat::Bmp,
+    ImageFormat::Tga,
+    #[cfg(feature = "jpeg")]
+    ImageFormat::Jpeg,
+    ImageFormat::Pnm,
+];
 
 fn limits() -> Limits {
     let mut limits = Limits::default();

@@ -55,14 +55,14 @@ pub const PROGRAMS: [Program; 11] = [
     },
     Program {
         name: "ch03_barycentric",
-        question: "The corners have values: which value has a pixel between them?",
+        question: "The vertices have values: what value does a pixel between them get?",
         variants: &["weights", "areas", "rgb", "gray", "texture", "spikes", "limited-edges", "limited"],
         has_model: false,
         has_texture: false,
     },
     Program {
         name: "ch04_projection",
-        question: "Why is small what is far away?",
+        question: "Why do distant things look smaller?",
         variants: &["cube", "orthographic", "rails", "near", "from-above"],
         has_model: false,
         has_texture: false,

@@ -2,5 +2,6 @@
 
 #[path = "../support/chapters.rs"]
 mod chapters;
+mod fingerprints;
 mod knobs;
 mod sizes;

@@ -1,11 +1,11 @@
 //! Whether the built book is whole: every link leads somewhere, every picture is ours, nothing comes from elsewhere,
-//! and every program and module of the repository is spoken of.
+//! and every program and module of the repository is named.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Component, Path, PathBuf};
 
 use crate::html::{Tag, tags};
-use crate::{Errors, files, pages, read, repository};
+use crate::{Errors, files, pages, read, repository, text};
 
 /// Checks the book in a folder.
 pub fn run(book: &Path) -> Result<(), Errors> {
@@ -13,6 +13,7 @@ pub fn run(book: &Path) -> Result<(), Errors> {
     errors.extend(mentions());
     errors.extend(unused_figures());
     errors.extend(accidental_lists());
+    errors.extend(text::run());
     if errors.is_empty() { Ok(()) } else { Err(errors) }
 }
 

@@ -13,6 +13,7 @@ mod check;
 mod commands;
 mod html;
 mod preprocess;
+mod text;
 
 /// What went wrong, one line each.
 type Errors = Vec<String>;

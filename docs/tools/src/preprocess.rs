@@ -1,9 +1,11 @@
 //! Makes pages that show well on a code host into pages of a book that is whole by itself.
 //!
 //! - Pictures of `tests/snapshots` are copied into the book, and centered.
+//! - Below `<!-- live -->` a picture of a chapter's variant becomes a live figure, if `docs/live/build` has run.
 //! - Drawings (`figures/NAME.svg`) are put into the page, where they take the colors of its theme.
 //! - A note for those who read the page on a code host, where nothing is put in, is left out.
 //! - Other files of the repository that a page links to become pages with line numbers.
+//! - Code within text that is longer than a line of a phone says where it may break.
 //! - Formulas, blocks named `math` and `` $`…`$ `` within a line, become MathML.
 //!
 //! The copies go to `docs/src/files`, which git ignores, since mdBook takes all files from below `src`.
@@ -38,18 +40,26 @@ pub fn run() -> Result<(), Errors> {
 /// What begins a note that is not for the book.
 const HOST_NOTE: &str = "<!-- on a code host -->";
 
+/// What stands above a picture that is to be live. On a code host it is a comment.
+const LIVE: &str = "<!-- live -->";
+
+/// The chapters, compiled for pages.
+const MODULE: &str = "target/live/rasterbook.wasm";
+
 struct Work {
     /// `docs/src`.
     source: PathBuf,
     copies: BTreeSet<PathBuf>,
     /// The page at work, relative to `source`.
     page: PathBuf,
+    /// Whether the next picture is to be live.
+    is_live: bool,
     errors: Errors,
 }
 
 impl Work {
     fn new(source: PathBuf) -> Self {
-        Self { source, copies: BTreeSet::new(), page: PathBuf::new(), errors: Vec::new() }
+        Self { source, copies: BTreeSet::new(), page: PathBuf::new(), is_live: false, errors: Vec::new() }
     }
 
     fn items(&mut self, items: &mut Value) {
@@ -76,6 +86,10 @@ impl Work {
             if line == HOST_NOTE {
                 // Up to the blank line below it.
                 lines.by_ref().find(|line| line.is_empty());
+                continue;
+            }
+            if line == LIVE {
+                self.is_live = true;
                 continue;
             }
             let trimmed = line.trim_start();
@@ -127,7 +141,11 @@ impl Work {
                 rest = after;
             } else {
                 result.push_str(&self.links(before));
-                result.push_str(&code[..2 * ticks + length]);
+                if ticks == 1 && inside.chars().count() > LONG_CODE {
+                    result.push_str(&long_code(inside));
+                } else {
+                    result.push_str(&code[..2 * ticks + length]);
+                }
                 rest = after;
             }
         }
@@ -184,16 +202,35 @@ impl Work {
         }
         let size = fs::read(&path).ok().and_then(|png| {
             let number = |at: usize| Some(u32::from_be_bytes(png.get(at..at + 4)?.try_into().ok()?));
-            Some(format!("width=\"{}\" height=\"{}\"", number(16)?, number(20)?))
+            Some((number(16)?, number(20)?))
         });
-        let Some(size) = size else {
+        let Some((width, height)) = size else {
             self.error(&format!("no picture {target}"));
             return String::new();
         };
+        let live = if std::mem::take(&mut self.is_live) { self.live(target) } else { None };
+        let class = live.unwrap_or_else(|| picture_class(target, width));
         let target = self.target(target);
         format!(
-            "<figure><a href=\"{target}\"><img src=\"{target}\" alt=\"{alternative}\" {size}></a></figure>"
+            "<figure{class}><a href=\"{target}\"><img src=\"{target}\" alt=\"{alternative}\" width=\"{width}\" \
+             height=\"{height}\"></a></figure>"
         )
+    }
+
+    /// What makes a picture a live figure: whose it is, and where the module is. Its name changes with its content, so
+    /// that no browser takes an old one for it.
+    fn live(&mut self, target: &str) -> Option<String> {
+        let Some((chapter, variant, frame)) = variant_of(target) else {
+            self.error(&format!("{target} is no variant's own picture: it cannot be live"));
+            return None;
+        };
+        let module = fs::read(repository().join(MODULE)).ok()?;
+        let file = format!("live-{:016x}.wasm", fingerprint(&module));
+        self.copy(&self.source.join("files").join(&file), &module);
+        Some(format!(
+            " class=\"live\" data-chapter=\"{chapter}\" data-variant=\"{variant}\" data-frame=\"{frame}\" \
+             data-module=\"files/{file}\""
+        ))
     }
 
     /// Where a link leads to in the book.
@@ -253,6 +290,58 @@ impl Work {
     }
 }
 
+/// The chapter, the variant and the frame that a picture shows; `None` if it is magnified, or beside another one.
+fn variant_of(target: &str) -> Option<(&str, &str, u32)> {
+    let name = target.rsplit('/').next()?.strip_suffix(".snap.png")?;
+    let (chapter, variant) = name.split_once("__")?;
+    let (variant, frame) = variant.split_once('@').unwrap_or((variant, "0"));
+    let is_alone = !variant.contains("--") && !variant.contains("-zoom");
+    is_alone.then_some((chapter, variant, frame.parse().ok()?))
+}
+
+/// A number that another content has not, as far as one can tell: FNV-1a.
+fn fingerprint(bytes: &[u8]) -> u64 {
+    let mix = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x100_0000_01b3);
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, mix)
+}
+
+/// The class of a picture: a comparison is a strip of three, another one says how much room it needs to be shown in its
+/// own size.
+fn picture_class(file: &str, width: u32) -> String {
+    if file.rsplit('/').next().is_some_and(|name| name.contains("--")) {
+        return " class=\"strip\"".to_owned();
+    }
+    let room = [320, 480, 640, 800].into_iter().find(|room| width <= *room);
+    room.map(|room| format!(" class=\"to-{room}\"")).unwrap_or_default()
+}
+
+/// So many characters of code fit into a line of a phone.
+const LONG_CODE: usize = 36;
+
+/// Long code within text: it breaks between words, and a long word after `_` and `/`.
+fn long_code(code: &str) -> String {
+    // Signs that Markdown reads, even within tags.
+    let literal = |text: &str| {
+        let mut result = escape(text);
+        for sign in ["*", "_", "[", "]", "|", "\\", "~"] {
+            result = result.replace(sign, &format!("&#{};", u32::from(sign.as_bytes()[0])));
+        }
+        result
+    };
+    // Within a table a bar has a backslash in front of it.
+    let code = code.replace("\\|", "|");
+    let words: Vec<String> = code
+        .split(' ')
+        .map(|word| {
+            if word.chars().count() <= LONG_CODE {
+                return format!("<span>{}</span>", literal(word));
+            }
+            word.split_inclusive(['_', '/']).map(literal).collect::<Vec<_>>().join("<wbr>")
+        })
+        .collect();
+    format!("<code class=\"long\">{}</code>", words.join(" "))
+}
+
 /// A path without `..`.
 fn normal(path: &Path) -> PathBuf {
     let mut result = PathBuf::new();
@@ -296,4 +385,28 @@ fn listing(name: &str, text: &str) -> String {
          span:target {{ background: #8884 }}\n</style>\n</head>\n<body>\n<h1>{name}</h1>\n\
          <pre>{lines}</pre>\n</body>\n</html>\n"
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_code_breaks_between_words_and_in_long_names_alone() {
+        assert_eq!(
+            long_code("run --set a|b"),
+            "<code class=\"long\"><span>run</span> <span>--set</span> <span>a&#124;b</span></code>"
+        );
+        let name = "the_row_of_a_fractional_middle_vertex_is_drawn_twice";
+        let code = long_code(name);
+        assert_eq!(code.matches("<wbr>").count(), name.matches('_').count(), "{code}");
+        assert!(!code.contains('_') && !code.contains("<span>"), "{code}");
+    }
+
+    #[test]
+    fn pictures_say_how_much_room_they_need() {
+        assert_eq!(picture_class("../tests/a__b--c.snap.png", 480), " class=\"strip\"");
+        assert_eq!(picture_class("../tests/a__floor-affine.snap.png", 560), " class=\"to-640\"");
+        assert_eq!(picture_class("../tests/a__b.snap.png", 801), "");
+    }
 }
