@@ -9,7 +9,7 @@
 use std::process::ExitCode;
 
 use glam::{DVec2, DVec3, DVec4, dvec2, dvec3};
-use rasterbook::figure::{Chapter, Fit, Knob, Knobs, Variant};
+use rasterbook::figure::{Chapter, Fit, Knob, Knobs, Sketch, Variant};
 use rasterbook::line::{StepAxis, dda};
 use rasterbook::transform::{orthographic, perspective, perspective_divide};
 use rasterbook::{Color, Framebuffer, Rect};
@@ -24,6 +24,8 @@ pub(crate) const CHAPTER: Chapter = Chapter {
         Variant::with_knobs("rails", rails, RAILS, "parallel rails meet at the horizon; the yellow points, each projected by itself, lie on them: straight stays straight")
             .source("section 4.2.2, Figure 4-4"),
         Variant::new("near", near, "one scene at n = 150 (blue), 300 (green) and 600 (red): twice the distance n is twice the picture, and nothing else"),
+        Variant::with_knobs("from-above", from_above, FROM_ABOVE, "two rods of one length, from above, and the rays from their ends to the eye: on the image plane the far one is the shorter one")
+            .source("section 4.2.1"),
     ],
 };
 
@@ -193,6 +195,54 @@ fn near(framebuffer: &mut Framebuffer) {
     }
 }
 // ANCHOR_END: near
+
+const FROM_ABOVE: &[Knob] = &[
+    Knob::point("a", [170.0, 250.0], "go up with it, twice as far from the eye: its image is half as long"),
+    Knob::point("b", [450.0, 440.0], "go to the side with it: its image moves, and keeps its length"),
+    Knob::number(
+        "near",
+        140.0,
+        [60.0, 200.0],
+        "",
+        "the plane goes away from the eye: both images grow, and the longer one stays longer by the same factor",
+    ),
+];
+
+/// Two rods from above, x to the right and z upwards, the eye at the bottom, and their images on the plane.
+fn from_above(framebuffer: &mut Framebuffer, knobs: &Knobs) {
+    const EYE: DVec2 = DVec2::new(320.0, 30.0);
+    let fit = Fit::new(framebuffer.rect(), [640.0, 480.0]);
+    let near = knobs.number("near");
+    let half = dvec2(80.0, 0.0);
+    let rods = [("a", [240.0, 150.0, 50.0]), ("b", [90.0, 160.0, 255.0])].map(|(name, color)| {
+        let place = knobs.point(name) - EYE;
+        // It stays behind the plane.
+        let middle = dvec2(place.x, place.y.max(near + 4.0));
+        ([middle - half, middle + half], color)
+    });
+
+    let mut sketch = Sketch::new(framebuffer, fit);
+    for (ends, color) in rods {
+        let [left, right] = ends.map(|end| EYE + end);
+        sketch.triangle([EYE, left, right], Color::truncated(color.map(|channel| channel * 0.25)));
+    }
+    sketch.line(EYE + dvec2(-290.0, near), EYE + dvec2(290.0, near), 2.0, Color::gray(150));
+    for (ends, color) in rods {
+        let image = ends.map(|end| {
+            let on_plane = perspective_divide(perspective(dvec3(end.x, 0.0, end.y), near));
+            EYE + dvec2(on_plane.x, near)
+        });
+        let [left, right] = ends.map(|end| EYE + end);
+        let color = Color::truncated(color);
+        for end in [left, right] {
+            sketch.line(EYE, end, 2.0, color);
+        }
+        sketch.line(left, right, 9.0, color);
+        sketch.line(image[0], image[1], 9.0, color);
+        sketch.dot((left + right) / 2.0, 7.0, Color::WHITE);
+    }
+    sketch.dot(EYE, 8.0, Color::WHITE);
+}
 
 fn main() -> ExitCode {
     CHAPTER.main()

@@ -52,6 +52,8 @@ pub(crate) const CHAPTER: Chapter = Chapter {
         )
         .remedied_by("top-left"),
         Variant::with_knobs("top-left", edges::top_left, edges::HEXAGON, "the same six triangles by edge functions and the top-left rule: each pixel is drawn once, and there is no hole"),
+        Variant::with_knobs("two-rules", edges::two_rules, edges::TWO_RULES, "one triangle by the book's rule (left) and by the top-left rule (right), each with the points that it asks; orange is taken by one rule alone")
+            .size(784, 288),
         Variant::with_knobs("bounding-box", edges::bounding_box, edges::BOUNDING_BOX, "the box around a triangle: outside, the tint says which edge has the pixel on its wrong side; where none has is the triangle")
             .source("second, third and fourth note"),
         Variant::with_knobs("one-sample", samples::one_sample, samples::SCENE, "one sample in the middle of each pixel: jaggies along the edges, a broken line where triangles pierce each other, and moiré where stripes are narrower than pixels")

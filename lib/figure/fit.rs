@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use crate::interpolate::ScreenVertex;
-use crate::rect::Rect;
+use crate::rect::{Pixel, Rect};
 use crate::transform::Viewport;
 
 /// A scene in a picture: as large as it fits, its proportions kept, in the middle.
@@ -36,6 +36,11 @@ impl Fit {
         let room = Viewport::fitting(picture, width / height);
         let scale = (room.width / width).min(room.height / height);
         Self { scale, origin: DVec2::new(room.x, room.y) }
+    }
+
+    /// A scene whose lower left vertex is at a pixel, each of its units as large as so many pixels.
+    pub(super) fn placed((x, y): Pixel, scale: u32) -> Self {
+        Self { scale: scale.into(), origin: DVec2::new(x.into(), y.into()) }
     }
 
     /// Where a point of the scene is in the picture.

@@ -24,7 +24,7 @@ pub(crate) const INK: Color = Color::gray(215);
 /// The color of what surrounds a picture.
 pub(crate) const PAPER: Color = Color::gray(45);
 /// So many pixels is a dot of a [`label`] wide.
-const DOT: i32 = 2;
+pub(super) const DOT: i32 = 2;
 /// How high a label is.
 pub(crate) const LABEL_HEIGHT: i32 = 5 * DOT;
 
@@ -39,10 +39,15 @@ pub(super) fn glyph(picture: &mut Framebuffer, rows: &[&str], (left, bottom): Pi
 }
 
 /// Writes a number, `+` included, with its lower left pixel at (left, bottom).
-pub(crate) fn label(picture: &mut Framebuffer, text: &str, (left, bottom): Pixel, color: Color) {
+pub(crate) fn label(picture: &mut Framebuffer, text: &str, place: Pixel, color: Color) {
+    digits(picture, text, place, DOT, color);
+}
+
+/// The same, each dot as a square of `dot` pixels.
+pub(super) fn digits(picture: &mut Framebuffer, text: &str, (left, bottom): Pixel, dot: i32, color: Color) {
     for (place, c) in (0..).zip(text.chars()) {
         let rows = c.to_digit(10).map_or(&PLUS, |digit| &DIGITS[digit as usize]);
-        glyph(picture, rows, (left + 4 * DOT * place, bottom), DOT, color);
+        glyph(picture, rows, (left + 4 * dot * place, bottom), dot, color);
     }
 }
 

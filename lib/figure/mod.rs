@@ -31,6 +31,7 @@ mod knobs;
 pub mod picture;
 mod ruler;
 mod scene;
+mod sketch;
 mod subject;
 
 pub use canvas::{Canvas, RasterizerChoice};
@@ -38,4 +39,5 @@ pub use chapter::{Animation, Chapter, DrawOptions, Mistake, Variant};
 pub use fit::Fit;
 pub use knobs::{Kind, Knob, KnobError, Knobs, Value};
 pub use scene::{Given, Scene};
+pub use sketch::{Sketch, stroke};
 pub use subject::Subject;

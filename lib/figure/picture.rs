@@ -1,5 +1,6 @@
 //! Pictures made of pictures: enlarged, side by side, and where two of them differ.
 
+use super::fit::Fit;
 use super::ruler::ruler;
 use crate::color::Color;
 use crate::framebuffer::Framebuffer;
@@ -103,15 +104,25 @@ pub(crate) fn fill_blocks(into: &mut Framebuffer, picture: &Framebuffer, part: R
 ///
 /// # Panics
 /// As [`Framebuffer::new`] does.
-pub fn draw_enlarged(
+pub fn draw_enlarged(into: &mut Framebuffer, screen: (u32, u32), draw: impl FnOnce(&mut Framebuffer)) {
+    draw_enlarged_within(into, into.rect(), screen, draw);
+}
+
+/// The same in a part of a picture: the screen comes to lie in its middle. Where its pixels are in the picture.
+///
+/// # Panics
+/// As [`Framebuffer::new`] does.
+pub fn draw_enlarged_within(
     into: &mut Framebuffer,
+    part: Rect,
     (width, height): (u32, u32),
     draw: impl FnOnce(&mut Framebuffer),
-) {
+) -> Fit {
     let mut screen = Framebuffer::new(width, height);
-    let factor = (into.width() / width).min(into.height() / height).max(1);
-    let rest = |side: u32, shown: u32| (side as i32 - (shown * factor) as i32).div_euclid(2);
-    let origin = (rest(into.width(), width), rest(into.height(), height));
+    let (columns, rows) = (part.columns().len() as u32, part.rows().len() as u32);
+    let factor = (columns / width).min(rows / height).max(1);
+    let middle = |side: u32, shown: u32| (side as i32 - (shown * factor) as i32).div_euclid(2);
+    let origin = (part.left + middle(columns, width), part.bottom + middle(rows, height));
 
     let observer = into.observer();
     screen.set_observer(observer.clone());
@@ -123,6 +134,7 @@ pub fn draw_enlarged(
     into.set_observer(None);
     paste(into, &enlarged(&screen, factor), origin.0, origin.1);
     into.set_observer(observer);
+    Fit::placed(origin, factor)
 }
 
 /// Copies a picture into another one, its lower left corner to (left, bottom); what does not fit is left out.
@@ -207,6 +219,19 @@ mod tests {
         assert_eq!(large.get(14, 14), Some(Color::RED));
         assert_eq!(large.get(15, 14), Some(GRID));
         assert_eq!(large.get(14, 15), Some(GRID));
+    }
+
+    #[test]
+    fn an_enlarged_screen_lies_in_the_middle_of_its_part() {
+        let part = Rect { left: 20, bottom: 10, right: 45, top: 32 };
+        let mut picture = Framebuffer::new(50, 40);
+        let cells = draw_enlarged_within(&mut picture, part, (4, 2), |screen| screen.set(1, 1, Color::RED));
+        // Six times as large: a column is left over on the right, and five rows below and above.
+        assert_eq!(cells, Fit::placed((20, 15), 6));
+        assert_eq!(cells.at(glam::dvec2(1.0, 1.0)), glam::dvec2(26.0, 21.0));
+        let reds = picture.rect().rows().flat_map(|y| (0..50).map(move |x| (x, y)));
+        let reds: Vec<_> = reds.filter(|&(x, y)| picture.get(x, y) == Some(Color::RED)).collect();
+        assert_eq!((reds.len(), reds[0], reds[35]), (36, (26, 21), (31, 26)));
     }
 
     #[test]

@@ -24,10 +24,10 @@ chapters!(
     "../../../chapters/ch02_triangles/main.rs" ch02_triangles,
     "../../../chapters/ch03_barycentric.rs" ch03_barycentric,
     "../../../chapters/ch04_projection.rs" ch04_projection,
-    "../../../chapters/ch05_perspective_correct.rs" ch05_perspective_correct,
-    "../../../chapters/ch06_z_buffer.rs" ch06_z_buffer,
+    "../../../chapters/ch05_perspective_correct/main.rs" ch05_perspective_correct,
+    "../../../chapters/ch06_z_buffer/main.rs" ch06_z_buffer,
     "../../../chapters/ch07_clipping.rs" ch07_clipping,
-    "../../../chapters/ch08_cvv.rs" ch08_cvv,
+    "../../../chapters/ch08_cvv/main.rs" ch08_cvv,
     "../../../chapters/ch09_pipeline.rs" ch09_pipeline,
     "../../../chapters/ch10_matrices_lighting/main.rs" ch10_matrices_lighting,
 );
