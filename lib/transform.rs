@@ -317,7 +317,9 @@ pub fn rotate_x_to_z(angle: f64) -> DMat4 {
 pub fn about(pivot: DVec3, transformation: DMat4) -> DMat4 {
     translate(pivot) * transformation * translate(-pivot)
 }
+// ANCHOR_END: matrices
 
+// ANCHOR: look_at
 /// `view_from_world` of a camera at `eye` that looks towards `target`, with `up` upwards in the picture.
 ///
 /// ```text
@@ -337,17 +339,19 @@ pub fn look_at(eye: DVec3, target: DVec3, up: DVec3) -> DMat4 {
     let row = |axis: DVec3| axis.extend(-axis.dot(eye)).to_array();
     rows([row(right), row(up), row(forward), [0.0, 0.0, 0.0, 1.0]])
 }
-// ANCHOR_END: matrices
+// ANCHOR_END: look_at
 
+// ANCHOR: normal_matrix
 /// The matrix for normals that belongs to a matrix for points: the inverse of its transpose.
 ///
-/// A normal n stands upright on every direction t of a surface, n·t = 0. When t becomes M t, n must become
+/// A normal n is perpendicular to every direction t within a surface, n·t = 0. When t becomes M t, n must become
 /// (M⁻¹)ᵀ n, since ((M⁻¹)ᵀ n)·(M t) = n·(M⁻¹ M t) = n·t. For rotations that is M itself. Not finite if M flattens
 /// space. Source: fourth note, transformation of normals.
 #[must_use]
 pub fn normal_matrix(world_from_model: DMat4) -> DMat3 {
     DMat3::from_mat4(world_from_model).inverse().transpose()
 }
+// ANCHOR_END: normal_matrix
 
 #[cfg(test)]
 mod tests {

@@ -81,6 +81,7 @@ pub struct EdgeFunction {
 }
 
 impl EdgeFunction {
+    // ANCHOR: edge_value
     /// The function of the edge from a to b.
     #[must_use]
     #[inline]
@@ -95,10 +96,11 @@ impl EdgeFunction {
     pub fn at(&self, [x, y]: Subpixel) -> i64 {
         self.step_x * x + self.step_y * y + self.constant
     }
+    // ANCHOR_END: edge_value
 
     /// Whether points on the edge itself belong to the triangle on its left: it is a top edge or a left edge.
     ///
-    /// Against the clock round the triangle, a top edge runs to the left, and a left edge runs down.
+    /// Counter-clockwise round the triangle, a top edge runs to the left, and a left edge runs down.
     ///
     /// ```text
     ///             top
@@ -145,6 +147,7 @@ impl EdgeFunction {
     }
 }
 
+// ANCHOR: top_left
 /// The rule by itself, for whole numbers of any size.
 #[inline]
 pub(crate) fn is_top_left<I: PartialOrd + Default>(step_x: I, step_y: I) -> bool {
@@ -152,6 +155,7 @@ pub(crate) fn is_top_left<I: PartialOrd + Default>(step_x: I, step_y: I) -> bool
     let (runs_down, is_level, runs_left) = (step_x > zero, step_x == zero, step_y < zero);
     runs_down || (is_level && runs_left)
 }
+// ANCHOR_END: top_left
 // ANCHOR_END: edge_function
 
 /// How the weights of the second and the third of three vertices change from pixel to pixel.
@@ -302,6 +306,7 @@ impl Coverage {
         })
     }
 
+    // ANCHOR: covered_columns
     /// Which of some columns of a row are covered: they lie side by side.
     #[must_use]
     #[inline]
@@ -310,6 +315,7 @@ impl Coverage {
         let [a, b, c] = from_fn(|i| self.edges[i].columns(columns.clone(), values[i]));
         a.start.max(b.start).max(c.start)..a.end.min(b.end).min(c.end)
     }
+    // ANCHOR_END: covered_columns
 }
 // ANCHOR_END: coverage
 
