@@ -1,7 +1,7 @@
 //! # Chapter 6: the z-buffer
 //!
 //! **Which surface is in front?** The painter draws what is far first. That fails as soon as two surfaces pass through
-//! one another. The z-buffer asks the question anew at every pixel.
+//! one another. The z-buffer decides anew at every pixel.
 //!
 //! New here: a depth for each pixel, and the depth test (`lib/depth.rs`). The depth is interpolated like any other
 //! value, by chapter 5's formula. Book: chapter 6.
@@ -24,7 +24,7 @@ pub(crate) const CHAPTER: Chapter = Chapter {
     variants: &[
         Variant::with_knobs("intersecting", intersecting, PIERCING, "the same with a z-buffer: each triangle is seen where it is nearer, and they meet in a line")
             .source("section 6.2, Figure 6-3"),
-        Variant::with_knobs("z-buffer", z_buffer, SQUARES, "the tilted square before a square that faces us: drawn first, and still in front where it is nearer")
+        Variant::with_knobs("z-buffer", z_buffer, SQUARES, "a tilted square and one that faces us: the tilted one is drawn first, and still in front where it is nearer")
             .source("section 6.2, Figure 6-5"),
         Variant::new("painter", painter, "three squares drawn from far to near, without a depth test: each covers what is behind it")
             .source("section 6.1, Figure 6-2"),
@@ -33,10 +33,10 @@ pub(crate) const CHAPTER: Chapter = Chapter {
         Variant::with_knobs("painter-green-first", painter_green_first, PIERCING, "the same, green drawn first: no order is right")
             .source("section 6.1, Figure 6-3").remedied_by("intersecting"),
         Variant::with_knobs("depth", depth, STEPS, "a z-buffer, as hardware stores it, in 16 grays: black is near (1), white is far (12); most of them lie close by"),
-        Variant::with_knobs("w-buffer", w_buffer, STEPS, "the same scene with ω stored, in 16 grays: black is near (1), white is far (12); each stands for the same distance"),
+        Variant::with_knobs("w-buffer", w_buffer, STEPS, "the same scene with w stored, in 16 grays: black is near (1), white is far (12); each stands for the same distance"),
         Variant::with_knobs("uncleared", uncleared, FRAMES, "the second frame of a moving square, depths of the first not cleared: the old square cuts a hole into the new one")
             .source("section 6.2, section 9.4.1").remedied_by("cleared"),
-        Variant::with_knobs("cleared", cleared, FRAMES, "the same frame with the depths cleared before it: the square is whole").source("section 6.2"),
+        Variant::with_knobs("cleared", cleared, FRAMES, "the same frame, its depths cleared first: the square is whole").source("section 6.2"),
     ],
 };
 
@@ -53,7 +53,7 @@ const SQUARES: &[Knob] = &[
         150.0,
         [90.0, 340.0],
         "",
-        "the square that faces us goes away: the line in which they meet wanders to the right",
+        "the square that faces us goes away: the line in which they meet moves to the right",
     ),
 ];
 
@@ -70,7 +70,7 @@ const PIERCING: &[Knob] = &[
         0.0,
         [-220.0, 220.0],
         "",
-        "the red triangle goes away: the line in which they meet wanders, until green hides red in any order",
+        "the red triangle goes away: the line in which they meet moves, until green hides red in any order",
     ),
 ];
 
@@ -110,21 +110,22 @@ type Triangle<const N: usize> = [ScreenVertex<Projected<f64, N>>; 3];
 fn vertex([x, y, z]: [f64; 3], [u, v]: [f64; 2]) -> ScreenVertex<Projected<f64, 3>> {
     const NEAR: f64 = 80.0;
     let mut clip = perspective(dvec3(x, y, z), NEAR);
-    // So that the divide leaves the depth: z · z / ω = z.
+    // So that the divide leaves the depth: z · z / w = z.
     clip.z = DepthEncoding::ViewZ.clip_z(z, NEAR, FAR_AWAY);
     let screen = perspective_divide(clip);
     ScreenVertex { position: screen.truncate(), varyings: Projected { w: clip.w, values: [u, v, screen.z] } }
 }
 // ANCHOR_END: vertex
 
-/// x and z of the right side of a square of side 480, whose left side is at x = 0 and z = 100.
+/// x and z of the right edge of a square of side 480, whose left edge is at x = 0 and z = 100.
 fn tilted_side(degrees: f64) -> [f64; 2] {
     let (sin, cos) = libm::sincos(degrees * PI / 180.0);
     [480.0 * cos, 100.0 + 480.0 * sin]
 }
 
 // ANCHOR: z_buffer
-/// Draws a triangle where it passes the test; its last value is its depth, `color_of` makes a color of all of them.
+/// Draws a triangle where it passes the test; its last value is its depth, `color_of` makes a color
+/// of all of them.
 fn draw<const N: usize>(
     target: &mut Target,
     triangle: Triangle<N>,
@@ -173,7 +174,7 @@ fn seen_from_middle(x: f64, y: f64, z: f64) -> ScreenVertex<Projected<f64, 1>> {
     ScreenVertex { position, varyings: Projected { w: clip.w, values: [z] } }
 }
 
-/// Draws an upright square, its lower left corner given, as two triangles.
+/// Draws a square that faces us, its lower left vertex given, as two triangles.
 fn draw_square(target: &mut Target, [x, y, z]: [f64; 3], side: f64, test: DepthTest, flat: Color) {
     let corner = |i: f64, j: f64| seen_from_middle(x + i * side, y + j * side, z);
     draw(target, [corner(0.0, 0.0), corner(1.0, 0.0), corner(0.0, 1.0)], test, |_| flat);
@@ -198,7 +199,8 @@ fn painter(framebuffer: &mut Framebuffer) {
 // ANCHOR_END: painter
 
 // ANCHOR: intersecting
-/// Two triangles that pierce each other: the red one is near at its tip on the right, the green one on the left.
+/// Two triangles that pierce each other: the red one is near at its tip on the right, the green one
+/// on the left.
 fn piercing(framebuffer: &mut Framebuffer, knobs: &Knobs, red_first: bool, test: DepthTest) {
     let (tips, red) = (knobs.number("tips"), knobs.number("red"));
     let red = [
@@ -241,8 +243,8 @@ fn intersecting(framebuffer: &mut Framebuffer, knobs: &Knobs) {
 // ANCHOR_END: intersecting
 
 // ANCHOR: depth
-/// A floor with posts, from the distance 1 to 12; each pixel's gray is what `encode` makes of its distance, 0..=1, in
-/// as many steps as so many bits have.
+/// A floor with posts, from the distance 1 to 12; each pixel's gray is what `encode` makes of its
+/// distance, 0..=1, in as many steps as so many bits have.
 fn encoded_depths(framebuffer: &mut Framebuffer, bits: i32, far: f64, encode: impl Fn(f64) -> f64) {
     let mut target = Target::like(framebuffer);
     target.clear(Color::BLACK, FAR_AWAY);
@@ -264,13 +266,13 @@ fn encoded_depths(framebuffer: &mut Framebuffer, bits: i32, far: f64, encode: im
     }
 }
 
-/// As hardware stores it: Q (ω − n) / ω.
+/// As hardware stores it: Q (w − n) / w.
 fn depth(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     let (near, far) = (knobs.number("near"), knobs.number("far"));
     encoded_depths(framebuffer, knobs.whole("bits"), far, |w| z_from_w(w, near, far));
 }
 
-/// ω itself, scaled to 0..=1.
+/// w itself, scaled to 0..=1.
 fn w_buffer(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     let (near, far) = (knobs.number("near"), knobs.number("far"));
     encoded_depths(framebuffer, knobs.whole("bits"), far, |w| (w - near) / (far - near));

@@ -21,17 +21,17 @@ pub(crate) const CHAPTER: Chapter = Chapter {
     name: "ch08_cvv",
     question: "What of the world gets into the picture?",
     variants: &[
-        Variant::with_knobs("clipped", clipped, BORDERS, "a triangle that is larger than the view, one corner nearer than the near plane: cut off at the borders of the picture")
+        Variant::with_knobs("clipped", clipped, BORDERS, "a triangle that is larger than the view, one vertex nearer than the near plane: cut off at the borders of the picture")
             .source("section 8.3, Figure 8-9"),
         Variant::with_knobs("ndc", ndc, BORDERS, "a triangle that fits: the frustum's borders become the borders of the picture").source("section 8.2, Figure 8-6"),
         Variant::with_knobs("planes", planes, PLANES, "the polygon before clipping and after each plane: left, right, bottom, top, near, far; the square is the view")
             .source("section 8.3, Table 8-1").size(800, 400),
         Variant::with_knobs("frustum", frustum, DEPTHS, "left: 35 points in the view volume from above, the eye at the bottom; right: the same in NDC. Equal steps in depth crowd together far away")
             .source("section 8.1, Figure 8-4").size(760, 400),
-        Variant::with_knobs("divide-first", divide_first, BEGIN, "a floor that passes under the eye, tested after the divide: behind us the comparison turns round, and the floor is cut off far before our feet")
+        Variant::with_knobs("divide-first", divide_first, BEGIN, "a floor that passes under the eye, tested after the divide: behind us the comparison is reversed, and the floor is cut off far in front of our feet")
             .source("section 8.3").remedied_by("clip-first"),
         Variant::with_knobs("clip-first", clip_first, BEGIN, "the same floor, clipped before the divide: it comes up to the near plane, at the lower border").source("section 8.3"),
-        Variant::with_knobs("zero-to-one", zero_to_one, BORDERS, "Direct3D's range, 0 ≤ z ≤ ω: another projection, another near plane, the same picture as 'clipped'"),
+        Variant::with_knobs("zero-to-one", zero_to_one, BORDERS, "Direct3D's range, 0 ≤ z ≤ w: another projection, another near plane, the same picture as 'clipped'"),
     ],
 };
 
@@ -102,7 +102,7 @@ const BEGIN: &[Knob] = &[Knob::number(
     -9.0,
     [-20.0, 18.0],
     "",
-    "where the floor begins: before the eye, too, 'divide-first' cuts in the wrong place; from 11 on nothing is cut",
+    "where the floor begins: in front of the eye, too, 'divide-first' cuts in the wrong place; from 11 on nothing is cut",
 )];
 
 /// The view with some of its borders in other places.
@@ -126,7 +126,7 @@ fn draw(target: &mut Target, triangle: [ClipVertex<2>; 3], planes: &[Plane], tes
     }
 }
 
-/// A corner in camera space, and its texture coordinates.
+/// A vertex in camera space, and its texture coordinates.
 type SpaceCorner = ([f64; 3], [f64; 2]);
 
 /// Draws triangles into a cleared picture; `project` takes camera space to clip space.
@@ -183,7 +183,7 @@ fn clipped(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     );
 }
 
-/// The same with z from 0 to ω.
+/// The same with z from 0 to w.
 fn zero_to_one(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     let view = view(knobs);
     draw_all(
@@ -231,8 +231,8 @@ fn draw_line(framebuffer: &mut Framebuffer, a: DVec2, b: DVec2, color: Color) {
 }
 
 // ANCHOR: plane_by_plane
-/// The polygon in NDC after no plane, one, two, … six; in each panel the view is the square in the middle. A plane that
-/// is switched off cuts nothing.
+/// The polygon in NDC after no plane, one, two, … six; in each panel the view is the square in the
+/// middle. A plane that is switched off cuts nothing.
 fn planes(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     const PANEL: f64 = 200.0;
     framebuffer.clear(Color::gray(24));
@@ -264,7 +264,8 @@ fn planes(framebuffer: &mut Framebuffer, knobs: &Knobs) {
 // ANCHOR_END: plane_by_plane
 
 // ANCHOR: frustum
-/// Rows of points at equal steps of depth, from above: in camera space on the left, in NDC on the right.
+/// Rows of points at equal steps of depth, from above: in camera space on the left, in NDC on the
+/// right.
 fn frustum(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     const ROWS: [Color; 5] = [
         Color::rgb(255, 90, 80),

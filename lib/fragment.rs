@@ -36,7 +36,7 @@ impl<R: Scalar, S, P: Probe + ?Sized> FragmentStages<'_, R, S, P> {
     ) where
         S: Shader<N>,
     {
-        // What is not linear on the screen is ω itself.
+        // What is not linear on the screen is w itself.
         let depth = if self.state.depth_encoding.is_linear_on_screen() { z } else { point.w };
         // 8. Fragment shading.
         let shaded = if S::USES_DERIVATIVES {

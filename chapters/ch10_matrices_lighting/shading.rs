@@ -1,4 +1,4 @@
-//! Where light is computed (faces, corners, pixels), which highlight there is, and how normals are turned.
+//! Where light is computed (faces, vertices, pixels), which highlight there is, and how normals are turned.
 
 use std::f64::consts::{PI, TAU};
 
@@ -226,7 +226,7 @@ pub(super) fn flat(canvas: &mut Canvas) {
     two_balls(canvas, Frequency::Vertex, true);
 }
 
-/// Light at the corners.
+/// Light at the vertices.
 pub(super) fn gouraud(canvas: &mut Canvas) {
     two_balls(canvas, Frequency::Vertex, false);
 }
@@ -242,7 +242,8 @@ pub(super) fn blinn_phong(canvas: &mut Canvas) {
 }
 
 // ANCHOR: highlights
-/// Above, a coarse and a fine ball; below, a dull floor-like ball under light from behind, with a broad highlight.
+/// Above, a coarse and a fine ball; below, a dull floor-like ball under light from behind, with a
+/// broad highlight.
 fn highlights(canvas: &mut Canvas, highlight: Highlight) {
     canvas.clear(&state());
     let [exponent, broad] = ["exponent", "broad-exponent"].map(|name| canvas.knobs.number(name));
@@ -265,7 +266,7 @@ fn highlights(canvas: &mut Canvas, highlight: Highlight) {
 // ANCHOR_END: highlights
 
 // ANCHOR: distance
-/// Two rows of balls: parallel light above, a lamp before the ball on the left below.
+/// Two rows of balls: parallel light above, a lamp in front of the ball on the left below.
 pub(super) fn distance(canvas: &mut Canvas) {
     canvas.clear(&state());
     let dull = Material { highlight: Highlight::None, ambient: 0.1, diffuse: 0.9, ..SHINY };

@@ -357,7 +357,7 @@ mod tests {
         grid(&counts)
     }
 
-    /// The corners of a square whose sides run through the centers of pixels.
+    /// The vertices of a square whose edges run through the centers of pixels.
     const A: (f64, f64) = (1.5, 0.5);
     const B: (f64, f64) = (6.5, 0.5);
     const C: (f64, f64) = (6.5, 5.5);
