@@ -185,7 +185,8 @@ fn polygon(framebuffer: &mut Framebuffer, knobs: &Knobs) {
         (70.0, 380.0),
     ];
     let outline = corners.map(|(x, y)| ClipVertex { position: dvec4(x, y, 0.0, 1.0), varyings: [] });
-    // Kept is what lies left of the line x = place + slope · y: with w = 1 a plane of clip space is a line.
+    // Kept is what lies left of the line x = place + slope · y: with w = 1 a plane of clip space is
+    // a line.
     let plane = Plane::homogeneous(dvec4(-1.0, slope, 0.0, place));
     let kept: ArrayVec<ClipVertex<0>, 16> = clip_polygon(&outline, &plane, ClipTest::BeforeDivide);
 

@@ -168,7 +168,8 @@ impl<D: Scalar> DepthBuffer<D> {
     }
 
     // ANCHOR: test_and_set
-    /// Whether a depth passes the test against the one that is stored for a pixel; if so, it replaces it.
+    /// Whether a depth passes the test against the one that is stored for a pixel; if so, it
+    /// replaces it.
     #[inline]
     fn test_and_set_at(&mut self, index: usize, depth: D, test: DepthTest) -> bool {
         let passes = test.passes(depth, self.values[index]);

@@ -24,8 +24,8 @@ pub(crate) struct FragmentStages<'a, R: Scalar, S, P: ?Sized> {
 
 impl<R: Scalar, S, P: Probe + ?Sized> FragmentStages<'_, R, S, P> {
     // ANCHOR: fragment
-    /// Draws a fragment: `point` has been interpolated like any value, `z` linearly on the screen; `derivatives` says how
-    /// the varyings change from pixel to pixel, for shaders that ask.
+    /// Draws a fragment: `point` has been interpolated like any value, `z` linearly on the screen;
+    /// `derivatives` says how the varyings change from pixel to pixel, for shaders that ask.
     #[inline(always)]
     pub(crate) fn draw<const N: usize>(
         &mut self,

@@ -26,20 +26,23 @@ use std::sync::LazyLock;
 use crate::real::Real;
 
 // ANCHOR: tables
-/// The light of an encoded value c, both in 0..=1: c / 12.92 for c ≤ 0.04045, ((c + 0.055) / 1.055)^2.4 above.
+/// The light of an encoded value c, both in 0..=1: c / 12.92 for c ≤ 0.04045,
+/// ((c + 0.055) / 1.055)^2.4 above.
 fn light_of(c: f64) -> f64 {
     if c <= 0.04045 { c / 12.92 } else { libm::pow((c + 0.055) / 1.055, 2.4) }
 }
 
-/// The light of each of the 256 values of a channel. A table, since a power costs as much as a hundred additions.
+/// The light of each of the 256 values of a channel. A table, since a power costs as much as a
+/// hundred additions.
 static LIGHT: LazyLock<[f64; 256]> = LazyLock::new(|| from_fn(|value| light_of(value as f64 / 255.0)));
 
-/// The light half-way, in encoded values, between each value and the next: from there on the next one is nearer.
+/// The light half-way, in encoded values, between each value and the next: from there on the next
+/// one is nearer.
 static BORDERS: LazyLock<[f64; 255]> =
     LazyLock::new(|| from_fn(|value| light_of((value as f64 + 0.5) / 255.0)));
 
-/// For each of 4096 equal steps of light, the value of its darkest light. No step holds more than one border, so that the
-/// value of any light in it is this one or the next.
+/// For each of 4096 equal steps of light, the value of its darkest light. No step holds more than
+/// one border, so that the value of any light in it is this one or the next.
 static STEPS: LazyLock<[u8; 4096]> =
     LazyLock::new(|| from_fn(|step| BORDERS.partition_point(|&border| border <= step as f64 / 4096.0) as u8));
 // ANCHOR_END: tables

@@ -119,7 +119,8 @@ fn faceted(ball: &Mesh<Corner>) -> Mesh<Corner> {
 /// Where light is computed.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Frequency {
-    /// In the vertex shader; colors are interpolated (Gouraud, 1971). With the normals of faces: flat shading.
+    /// In the vertex shader; colors are interpolated (Gouraud, 1971). With the normals of faces:
+    /// flat shading.
     Vertex,
     /// In the fragment shader; normals are interpolated (Phong, 1975).
     Fragment,
@@ -252,7 +253,8 @@ fn highlights(canvas: &mut Canvas, highlight: Highlight) {
         let shader = ball_at(dvec3(x, 1.0, 6.0), 1.35, color, Frequency::Fragment, shiny, light);
         canvas.draw(&ball(rings, segments), &shader, &state());
     }
-    // The flattened ball below is so large that we see a slope of it, and the light comes low from behind us.
+    // The flattened ball below is so large that we see a slope of it, and the light comes low from
+    // behind us.
     let broad = Material { ambient: 0.05, diffuse: 0.25, specular: 0.8, exponent: broad, highlight };
     let low = Light::Directional(normalize([-0.9, 0.25, -0.6]));
     let view_from_model = translate(dvec3(0.0, -2.2, 6.0)) * scale(dvec3(3.2, 1.2, 2.0));
