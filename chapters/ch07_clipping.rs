@@ -1,7 +1,7 @@
 //! # Chapter 7: clipping
 //!
-//! **What if a triangle reaches behind the eye?** There the division turns everything upside down. What is not in front must
-//! be cut away before the divide, and for that edges must be straight before the divide, depth included.
+//! **What if a triangle reaches behind the eye?** There the division mirrors everything. What is not in front
+//! must be cut away before the divide, where edges and values are still linear; the depth must be linear there too.
 //!
 //! New here: the depth a + b/z, which changes linearly on the screen (`lib/depth.rs`, `lib/interpolate.rs`), and clipping
 //! (`lib/clip.rs`). Book: chapter 7.
@@ -25,9 +25,9 @@ pub(crate) const CHAPTER: Chapter = Chapter {
     variants: &[
         Variant::with_knobs("in-front", in_front, &[BEGIN, CUT], "the same floor, clipped at the near plane: it ends at the horizon, and below the picture's lower edge")
             .source("section 7.3, Figure 7-5"),
-        Variant::with_knobs("near", near, &[WALL_CUT, WALL], "two crossing walls, cut off at ω = 15: compare with 'reciprocal', their near ends are gone")
+        Variant::with_knobs("near", near, &[WALL_CUT, WALL], "two crossing walls, cut off at w = 15: compare with 'reciprocal', their near ends are gone")
             .source("section 7.4, Figure 7-10"),
-        Variant::with_knobs("reciprocal", reciprocal, &[WALL], "two crossing walls with the depth −1/z: they meet in a straight, upright line")
+        Variant::with_knobs("reciprocal", reciprocal, &[WALL], "two crossing walls with the depth −1/z: they meet in a straight, vertical line")
             .source("section 7.2"),
         Variant::with_knobs("behind", behind, &[BEGIN], "a floor that begins behind the eye, not clipped: what is behind us turns up in the sky, upside down")
             .source("section 7.3, Figure 7-5").remedied_by("in-front"),
@@ -62,7 +62,7 @@ const WALL: Knob = Knob::number(
     55.0,
     [20.0, 100.0],
     "",
-    "the wall that faces us goes away: the line in which they meet moves to the right and stays upright",
+    "the wall that faces us goes away: the line in which they meet moves to the right and stays vertical",
 );
 const LINE: &[Knob] = &[
     Knob::number(
@@ -94,7 +94,7 @@ fn draw(
         let on_screen = piece.map(|vertex| {
             let divided = NdcVertex::from(vertex);
             let projected = Projected { w: divided.w, values: divided.varyings };
-            // a + b/z changes linearly on the screen: it is stepped beside t′, and needs no correction.
+            // a + b/z changes linearly on the screen: it is stepped beside t′, without correction.
             ScreenVertex { position: to_screen(divided), varyings: (projected, divided.position.z) }
         });
         target.fill(fit.triangle(on_screen), &texel);
@@ -112,7 +112,8 @@ fn vertex([x, y, z]: [f64; 3], near: f64, uv: [f64; 2]) -> ClipVertex<2> {
 // ANCHOR_END: vertex
 
 // ANCHOR: walls
-/// The book's scene: a wall that runs away from us, and one at the distance 55 (or another) that faces us.
+/// The book's scene: a wall that runs away from us, and one at the distance 55 (or another) that
+/// faces us.
 fn walls(framebuffer: &mut Framebuffer, distance: f64, volume: ClipVolume) {
     let corner = |x: f64, y: f64, z: f64| vertex([x, y, z], 9.0, [x / 1280.0, y / 480.0]);
     let mut target = Target::like(framebuffer);
@@ -135,14 +136,14 @@ fn reciprocal(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     walls(framebuffer, knobs.number("distance"), ClipVolume::Everything);
 }
 
-/// Cut off at ω = 15, unless the knob says otherwise.
+/// Cut off at w = 15, unless the knob says otherwise.
 fn near(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     walls(framebuffer, knobs.number("distance"), ClipVolume::InFront(knobs.number("cut")));
 }
 // ANCHOR_END: walls
 
 // ANCHOR: behind
-/// A checkered floor from 6 behind the eye, begin = −6, to 60 before it.
+/// A checkered floor from 6 behind the eye, begin = −6, to 60 in front of it.
 fn floor(framebuffer: &mut Framebuffer, begin: f64, volume: ClipVolume) {
     let corner = |x: f64, z: f64| vertex([x, -1.0, z], 300.0, [x / 2.0, z / 2.0]);
     let [a, b] = [corner(-4.0, begin), corner(4.0, begin)];
@@ -164,7 +165,7 @@ fn behind(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     floor(framebuffer, knobs.number("begin"), ClipVolume::Everything);
 }
 
-/// Clipped a little before the eye.
+/// Clipped a little in front of the eye.
 fn in_front(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     floor(framebuffer, knobs.number("begin"), ClipVolume::InFront(knobs.number("cut")));
 }
@@ -184,7 +185,8 @@ fn polygon(framebuffer: &mut Framebuffer, knobs: &Knobs) {
         (70.0, 380.0),
     ];
     let outline = corners.map(|(x, y)| ClipVertex { position: dvec4(x, y, 0.0, 1.0), varyings: [] });
-    // Kept is what lies left of the line x = place + slope · y; a plane before the divide, with ω = 1, is a line.
+    // Kept is what lies left of the line x = place + slope · y: with w = 1 a plane of clip space is
+    // a line.
     let plane = Plane::homogeneous(dvec4(-1.0, slope, 0.0, place));
     let kept: ArrayVec<ClipVertex<0>, 16> = clip_polygon(&outline, &plane, ClipTest::BeforeDivide);
 

@@ -32,8 +32,8 @@ pub(crate) const CHAPTER: Chapter = Chapter {
         Variant::with_pipeline("double-buffer", double_buffer, "the near plane comes closer by 0.01 a frame, and the triangle of 'vbo' shrinks; no frame is seen half drawn")
             .animated(FLIGHT)
             .source("section 9.4.2"),
-        Variant::with_pipeline("tearing", tearing, "one buffer, seen while it is drawn: the new picture in the lower half, the old one above it").source("section 9.4.2").remedied_by("presented").knobs(&[FRAME, DRAWN]),
-        Variant::with_pipeline("presented", presented, "two buffers, seen at the same moment: the old picture, whole, which is the picture 'vbo'").source("section 9.4.2, Figure 9-9").knobs(&[FRAME]),
+        Variant::with_pipeline("tearing", tearing, "one buffer, shown half drawn: the new frame in the lower half, the old one above it; a step, as where a picture tears").source("section 9.4.2").remedied_by("presented").knobs(&[FRAME, DRAWN]),
+        Variant::with_pipeline("presented", presented, "two buffers, at the same moment: the old frame, whole, which is the picture 'vbo'").source("section 9.4.2, Figure 9-9").knobs(&[FRAME]),
         Variant::with_pipeline("indexed", indexed, "a hill of 49 vertices and 72 triangles; each vertex is shaded once, and up to six triangles share it").knobs(HILL),
     ],
 };
@@ -65,7 +65,7 @@ const BLENDING: &[Knob] = &[
 const VERTEX: Knob = Knob::point(
     "vertex",
     [600.0, 430.0],
-    "drag the small triangle's upper right vertex over the edge on the other side: it runs the other way",
+    "drag the small triangle's upper right vertex across the opposite edge: it runs the other way",
 );
 const CULL: Knob =
     Knob::choice("cull", &["none", "back", "front"], "the same two triangles, and which are left out");
@@ -101,7 +101,7 @@ const HILL: &[Knob] = &[
         "vertices",
         "the more vertices, the smoother the bands; with two the hill is lost",
     ),
-    Knob::choice("cull", &["none", "back", "front"], "without the fronts one looks into the hill"),
+    Knob::choice("cull", &["none", "back", "front"], "without the fronts you look into the hill"),
 ];
 
 /// The view of chapter 8.
@@ -270,7 +270,7 @@ fn shown_frame(canvas: &Canvas) -> u32 {
 }
 
 // ANCHOR: tearing
-/// A screen with one buffer, looked at when the lower half of the new picture has been drawn.
+/// A screen with one buffer, shown when the lower half of the new frame has been drawn.
 fn tearing(canvas: &mut Canvas) {
     let drawn = canvas.knobs.number("drawn") / 100.0;
     draw_frame(canvas, shown_frame(canvas));
@@ -284,7 +284,7 @@ fn tearing(canvas: &mut Canvas) {
     }
 }
 
-/// A screen with two buffers, looked at in the same moment: the new picture is in the back buffer, unseen.
+/// A screen with two buffers at the same moment: the new frame is in the back buffer, unseen.
 fn presented(canvas: &mut Canvas) {
     let mut screen = screen_for(canvas);
     draw_frame(canvas, shown_frame(canvas));
@@ -343,7 +343,7 @@ impl Shader<0> for Flat {
     type Attributes = [f64; 2];
 
     fn vertex(&self, &[x, y]: &[f64; 2]) -> ClipVertex<0> {
-        // The viewport's inverse, so that corners come to lie on whole pixels.
+        // The viewport's inverse, so that vertices come to lie on whole pixels.
         ClipVertex {
             position: glam::dvec4(x / 639.0 * 2.0 - 1.0, y / 479.0 * 2.0 - 1.0, 0.0, 1.0),
             varyings: [],

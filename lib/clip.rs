@@ -1,8 +1,8 @@
 //! Chapters 7 and 8: cutting away what cannot be projected, or is not to be seen.
 //!
 //! Takes a polygon in clip space, before the perspective divide, and gives the part of it that lies inside a list of
-//! planes. Values need no correction here: before the divide, space is still straight, and what changes linearly along an
-//! edge in camera space changes linearly along it in clip space.
+//! planes. Values need no correction here: what changes linearly along an edge in camera space
+//! changes linearly along it in clip space.
 //!
 //! ```
 //! use glam::dvec4;
@@ -11,7 +11,7 @@
 //! let vertex = |x, w, u| ClipVertex { position: dvec4(x, 0.0, 0.0, w), varyings: [u] };
 //! let triangle = [vertex(0.0, 1.0, 0.0), vertex(4.0, 1.0, 1.0), vertex(0.0, 5.0, 0.0)];
 //! let clipped = clip_triangle(triangle, &[Plane::RIGHT], Default::default());
-//! assert_eq!(clipped.len(), 4); // the corner at x = 4, beyond x = ω, is cut off
+//! assert_eq!(clipped.len(), 4); // the vertex at x = 4, beyond x = w, is cut off
 //! ```
 
 use std::array::from_fn;
@@ -25,7 +25,7 @@ use crate::transform::perspective_divide;
 /// A vertex in clip space, with the values that it carries.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClipVertex<const N: usize> {
-    /// (x, y, z, ω), before the perspective divide.
+    /// (x, y, z, w), before the perspective divide. The book writes ω for w.
     pub position: DVec4,
     /// The values, as they are in space.
     pub varyings: [f64; N],
@@ -51,36 +51,36 @@ pub struct Plane {
 
 // ANCHOR: planes
 impl Plane {
-    /// ω + x ≥ 0.
+    /// w + x ≥ 0.
     pub const LEFT: Self = Self::homogeneous(dvec4(1.0, 0.0, 0.0, 1.0));
-    /// ω − x ≥ 0.
+    /// w − x ≥ 0.
     pub const RIGHT: Self = Self::homogeneous(dvec4(-1.0, 0.0, 0.0, 1.0));
-    /// ω + y ≥ 0.
+    /// w + y ≥ 0.
     pub const BOTTOM: Self = Self::homogeneous(dvec4(0.0, 1.0, 0.0, 1.0));
-    /// ω − y ≥ 0.
+    /// w − y ≥ 0.
     pub const TOP: Self = Self::homogeneous(dvec4(0.0, -1.0, 0.0, 1.0));
-    /// ω + z ≥ 0, where NDC run from −1.
+    /// w + z ≥ 0, where NDC run from −1.
     pub const NEAR: Self = Self::homogeneous(dvec4(0.0, 0.0, 1.0, 1.0));
     /// z ≥ 0, where NDC run from 0 (Direct3D).
     pub const NEAR_ZERO: Self = Self::homogeneous(dvec4(0.0, 0.0, 1.0, 0.0));
-    /// ω − z ≥ 0.
+    /// w − z ≥ 0.
     pub const FAR: Self = Self::homogeneous(dvec4(0.0, 0.0, -1.0, 1.0));
 
     /// The six planes of the canonical view volume, in the order of the book (section 8.3, Table 8-1).
     pub const CANONICAL: [Self; 6] =
         [Self::LEFT, Self::RIGHT, Self::BOTTOM, Self::TOP, Self::NEAR, Self::FAR];
-    /// The same where z runs from 0 to ω.
+    /// The same where z runs from 0 to w.
     pub const ZERO_TO_ONE: [Self; 6] =
         [Self::LEFT, Self::RIGHT, Self::BOTTOM, Self::TOP, Self::NEAR_ZERO, Self::FAR];
 
-    /// All points with normal · (x, y, z, ω) ≥ 0: a plane through the origin of clip space, a *homogeneous* plane. The
-    /// same points are inside, however (x, y, z, ω) is scaled.
+    /// All points with normal · (x, y, z, w) ≥ 0: a plane through the origin of clip space, a
+    /// *homogeneous* plane. The same points are inside, however (x, y, z, w) is scaled.
     #[must_use]
     pub const fn homogeneous(normal: DVec4) -> Self {
         Self { normal, offset: 0.0 }
     }
 
-    /// ω ≥ `distance`: what is at least so far in front of the eye. Book, section 7.4.
+    /// w ≥ `distance`: what is at least so far in front of the eye. Book, section 7.4.
     #[must_use]
     pub const fn in_front(distance: f64) -> Self {
         Self { normal: dvec4(0.0, 0.0, 0.0, 1.0), offset: -distance }
@@ -104,13 +104,13 @@ impl Plane {
 /// On which coordinates the distance to a plane is measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ClipTest {
-    /// Clip space: x is compared with ω.
+    /// Clip space: x is compared with w.
     #[default]
     BeforeDivide,
-    /// NDC: x/ω is compared with 1, a mistake.
+    /// NDC: x/w is compared with 1, a mistake.
     ///
-    /// - Cause: behind the eye ω is negative, and the division reverses the comparison: what is outside seems inside.
-    ///   Nor is x/ω linear along an edge, so that the cut is made in the wrong place.
+    /// - Cause: behind the eye w is negative, and the division reverses the comparison: what is outside seems inside.
+    ///   Nor is x/w linear along an edge, so that the cut is made in the wrong place.
     /// - Artefact: a triangle that passes the eye is cut where it should not be, or turns up where nothing is.
     /// - Remedy: [`ClipTest::BeforeDivide`]. Book, section 8.3; second note, the proof about w.
     AfterDivide,
@@ -140,8 +140,8 @@ impl ClipTest {
 pub enum ClipVolume {
     /// Nothing is cut away, a mistake as soon as a vertex is not in front of the eye.
     ///
-    /// - Cause: a point behind the eye has a negative ω; the divide mirrors it to the other side of the screen, and a
-    ///   point beside the eye (ω = 0) to infinity.
+    /// - Cause: a point behind the eye has a negative w; the divide mirrors it to the other side of the screen, and a
+    ///   point beside the eye (w = 0) to infinity.
     /// - Artefact: a triangle that passes the eye turns inside out.
     /// - Remedy: [`ClipVolume::InFront`]. Book, section 7.3, Figure 7-5.
     Everything,
@@ -178,7 +178,7 @@ impl ClipVolume {
 /// The most vertices that a triangle can have after it was cut by six planes: each plane adds at most one.
 pub const MAX_VERTICES: usize = 9;
 
-/// What is left of a triangle, its vertices in order round it; nothing is allocated.
+/// What is left of a triangle, its vertices in order around it; nothing is allocated.
 pub type Polygon<const N: usize> = ArrayVec<ClipVertex<N>, MAX_VERTICES>;
 
 // ANCHOR: clip_polygon
@@ -192,9 +192,10 @@ pub type Polygon<const N: usize> = ArrayVec<ClipVertex<N>, MAX_VERTICES>;
 ///         d ────┼─ c               out → out   keep nothing
 /// ```
 ///
-/// The cut lies at t = d_a / (d_a − d_b), d the signed distances. It is always computed from the outer end a to the
-/// inner end b, whatever the direction of the edge: two triangles that share the edge get the same point to the last
-/// bit. Exact for convex polygons; of a concave one the parts stay connected along the plane.
+/// The cut lies at t = d_a / (d_a − d_b), d the signed distances. It is always computed from the
+/// outer end a to the inner end b, whatever the direction of the edge: two triangles that share the
+/// edge get the same point to the last bit. Exact for convex polygons; of a concave one the parts
+/// stay connected along the plane.
 ///
 /// At most `CAP` vertices are kept; a convex polygon gains at most one. Source: book, sections 7.4 and 8.3.
 #[must_use]
@@ -299,7 +300,7 @@ const HAIR: f64 = 1.0 / 18_446_744_073_709_551_616.0;
 pub struct NdcVertex<const N: usize> {
     /// Normalized device coordinates, −1..1 inside the view volume.
     pub position: DVec3,
-    /// ω, kept for perspective-correct interpolation.
+    /// w, kept for perspective-correct interpolation.
     pub w: f64,
     /// The values, as they are in space.
     pub varyings: [f64; N],
@@ -315,7 +316,7 @@ impl<const N: usize> From<ClipVertex<N>> for NdcVertex<N> {
     }
 }
 
-/// A vertex as it is reported: in clip space, or after the divide in NDC, with ω as the fourth component.
+/// A vertex as it is reported: in clip space, or after the divide in NDC, with w as the fourth component.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordedVertex {
     /// Where it is.

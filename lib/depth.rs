@@ -25,7 +25,7 @@ pub enum DepthTest {
     /// It must be nearer or equally far: of two equal ones the later wins. Book, section 6.2.
     #[default]
     LessOrEqual,
-    /// It must be farther, for buffers in which near is large.
+    /// Its depth must be larger, for buffers in which near is large (reversed z).
     Greater,
     /// It is always drawn, as by the painter's algorithm.
     Always,
@@ -61,7 +61,7 @@ impl DepthTest {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DepthEncoding {
-    /// The distance z of camera space, which is ω, interpolated like a value: a w-buffer. Book, section 6.2.
+    /// The distance z of camera space, which is w, interpolated like a value: a w-buffer. Book, section 6.2.
     ///
     /// Clear the buffer to more than the largest distance.
     ViewZ,
@@ -73,7 +73,7 @@ pub enum DepthEncoding {
 }
 
 impl DepthEncoding {
-    /// What the vertex stage writes as z of clip space, so that the divide by ω = z leaves this encoding: z · z, −1, or
+    /// What the vertex stage writes as z of clip space, so that the divide by w = z leaves this encoding: z · z, −1, or
     /// a z + b with `near` → −1 and `far` → 1. The distances count for [`Self::Ndc`] alone.
     #[must_use]
     pub fn clip_z(self, view_z: f64, near: f64, far: f64) -> f64 {
@@ -95,16 +95,16 @@ impl DepthEncoding {
     }
 }
 
-/// The depth of hardware buffers, 0 at the near plane and 1 at the far plane, from the distance ω.
+/// The depth of hardware buffers, 0 at the near plane and 1 at the far plane, from the distance w.
 ///
-/// Q (ω − n) / ω with Q = f / (f − n): the conversion from a w-buffer to a z-buffer. Source: fourth note, Z-Buffer and
+/// Q (w − n) / w with Q = f / (f − n): the conversion from a w-buffer to a z-buffer. Source: fourth note, Z-Buffer and
 /// W-Buffer.
 #[must_use]
 pub fn z_from_w(w: f64, near: f64, far: f64) -> f64 {
     far / (far - near) * (w - near) / w
 }
 
-/// The distance ω from a hardware depth in 0..=1: the inverse of [`z_from_w`].
+/// The distance w from a hardware depth in 0..=1: the inverse of [`z_from_w`].
 #[must_use]
 pub fn w_from_z(z: f64, near: f64, far: f64) -> f64 {
     near * far / (far - z * (far - near))
@@ -175,7 +175,8 @@ impl<D: Scalar> DepthBuffer<D> {
     }
 
     // ANCHOR: test_and_set
-    /// Whether a depth passes the test against the one that is stored for a pixel; if so, it replaces it.
+    /// Whether a depth passes the test against the one that is stored for a pixel; if so, it
+    /// replaces it.
     #[inline]
     fn test_and_set_at(&mut self, index: usize, depth: D, test: DepthTest) -> bool {
         let passes = test.passes(depth, self.values[index]);

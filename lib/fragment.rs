@@ -24,8 +24,8 @@ pub(crate) struct FragmentStages<'a, R: Scalar, S, P: ?Sized> {
 
 impl<R: Scalar, S, P: Probe + ?Sized> FragmentStages<'_, R, S, P> {
     // ANCHOR: fragment
-    /// Draws a fragment: `point` has been interpolated like any value, `z` linearly on the screen; `derivatives` says how
-    /// the varyings change from pixel to pixel, for shaders that ask.
+    /// Draws a fragment: `point` has been interpolated like any value, `z` linearly on the screen;
+    /// `derivatives` says how the varyings change from pixel to pixel, for shaders that ask.
     #[inline(always)]
     pub(crate) fn draw<const N: usize>(
         &mut self,
@@ -36,7 +36,7 @@ impl<R: Scalar, S, P: Probe + ?Sized> FragmentStages<'_, R, S, P> {
     ) where
         S: Shader<N>,
     {
-        // What is not linear on the screen is ω itself.
+        // What is not linear on the screen is w itself.
         let depth = if self.state.depth_encoding.is_linear_on_screen() { z } else { point.w };
         // 8. Fragment shading.
         let shaded = if S::USES_DERIVATIVES {

@@ -54,10 +54,10 @@ pub fn reflect<R: Real>(normal: Vector<R>, to_light: Vector<R>) -> Vector<R> {
 }
 
 // ANCHOR: lambert
-/// Diffuse light: max(0, n·l), the cosine of the angle under which the light comes in. Book, section 11.1.
+/// Diffuse light: max(0, n·l), the cosine of the angle at which the light arrives. Book, section 11.1.
 ///
 /// ```text
-///    light straight from above: much of it       aslant: the same light on more surface
+///    light straight from above: much of it       at an angle: the same light on more surface
 ///          │ │ │ │                                       ╲ ╲ ╲ ╲
 ///          ▼ ▼ ▼ ▼                                         ╲ ╲ ╲ ╲
 ///       ───────────────                             ────────────────────
@@ -87,7 +87,7 @@ pub fn phong<R: Real>(normal: Vector<R>, to_light: Vector<R>, to_eye: Vector<R>,
     cosine.map(|cosine| libm::pow(cosine, exponent))
 }
 
-/// Blinn and Phong's highlight: max(0, n·h)^p, h half-way between light and eye. It has no cut-off while both are above
+/// The highlight of Blinn–Phong: max(0, n·h)^p, h half-way between light and eye. It has no cut-off while both are above
 /// the surface. Source: fourth note, Blinn–Phong model.
 #[must_use]
 pub fn blinn_phong<R: Real>(normal: Vector<R>, to_light: Vector<R>, to_eye: Vector<R>, exponent: f64) -> R {
@@ -122,7 +122,8 @@ pub fn mapped_normal<R: Real>(texel: Vector<R>, [t, b, n]: [Vector<R>; 3]) -> Ve
 /// Where light comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Light {
-    /// From far away: everywhere from the same direction (of length 1, towards the light), and equally bright.
+    /// From far away: everywhere from the same direction (of length 1, towards the light), equally
+    /// bright.
     Directional([f64; 3]),
     /// From a point, of some intensity: at the distance r so much of it arrives as [`attenuation`] says, I / r².
     Point {
@@ -161,7 +162,7 @@ pub enum Highlight {
     BlinnPhong,
 }
 
-/// How a surface answers to light: the sum of three terms. Source: fourth note.
+/// How a surface reflects light: the sum of three terms. Source: fourth note.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
     /// The part of the ambient light that comes back, which is there without any direction.

@@ -96,7 +96,8 @@ impl<A> Mesh<A> {
     }
 
     // ANCHOR: triangles
-    /// Primitive assembly: the triangles in order, each as the positions of its three vertices in the list.
+    /// Primitive assembly: the triangles in order, each as the positions of its three vertices in
+    /// the list.
     pub fn triangles(&self) -> impl Iterator<Item = [usize; 3]> {
         (0..self.triangle_count()).map(|number| self.triangle(number))
     }

@@ -79,8 +79,8 @@ impl MipMaps {
     }
 
     // ANCHOR: level_of_detail
-    /// Which level fits: λ = log₂ ρ, where ρ is the longer one of the two ways in texels that (u, v) goes from a pixel to
-    /// its right and to its upper neighbor. Limited to the levels that there are.
+    /// Which level fits: λ = log₂ ρ, where ρ is how far (u, v) moves, in texels, from a pixel to its
+    /// right or to its upper neighbor, whichever is farther. Clamped to the levels that there are.
     ///
     /// ```text
     ///    a pixel, seen on the texture:

@@ -18,7 +18,7 @@
 //!     }
 //! }
 //!
-//! // A triangle whose upper right corner is cut off by the view volume.
+//! // A triangle whose upper right vertex is cut off by the view volume.
 //! let mesh = Mesh::unindexed(vec![dvec4(-1.0, -1.0, 0.0, 1.0), dvec4(1.0, -1.0, 0.0, 1.0), dvec4(2.0, 2.0, 0.0, 1.0)])?;
 //! let state = RenderState { load: LoadOp::Clear, ..RenderState::default() };
 //! let mut target = Target::new(64, 48);

@@ -36,7 +36,7 @@ use crate::rect::Pixel;
 /// A piece of a clipped triangle that has reached the rasterizer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Piece {
-    /// Its vertices in NDC, with ω.
+    /// Its vertices in NDC, with w.
     pub vertices: [RecordedVertex; 3],
     /// Twice its signed area: in NDC, or in square pixels where the rasterizer culls on the screen.
     pub signed_area: f64,
@@ -45,7 +45,7 @@ pub struct Piece {
 /// A fragment that has come to its end.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fragment {
-    /// ω.
+    /// w.
     pub w: f64,
     /// Its depth.
     pub depth: f64,

@@ -1,11 +1,11 @@
 //! Chapter 11, beyond the book: what the numbers of a picture mean as amounts of light.
 //!
-//! A channel of 128 is not half as bright as one of 255, but a fifth: pictures are stored by the *sRGB* curve, which
-//! spends more of its 256 steps on the dark, where eyes see more of them. Light adds up as amounts; so a shader that
+//! A channel of 128 is not half as bright as one of 255, but a fifth: pictures are encoded by the *sRGB* transfer function,
+//! which spends more of its 256 steps on the dark, where eyes see smaller differences. Light adds up as *linear light*; so a shader that
 //! adds and multiplies light decodes colors first, and encodes what comes out.
 //!
 //! ```text
-//!   stored                      light
+//!   encoded                     light
 //!   0..=255 ──── decode ────►  0..=1 ──── add, multiply, mix ────► encode ────► 0..=255
 //! ```
 //!
@@ -26,25 +26,28 @@ use std::sync::LazyLock;
 use crate::real::Real;
 
 // ANCHOR: tables
-/// The light of a stored number c, both in 0..=1: c / 12.92 for c ≤ 0.04045, ((c + 0.055) / 1.055)^2.4 above.
+/// The light of an encoded value c, both in 0..=1: c / 12.92 for c ≤ 0.04045,
+/// ((c + 0.055) / 1.055)^2.4 above.
 fn light_of(c: f64) -> f64 {
     if c <= 0.04045 { c / 12.92 } else { libm::pow((c + 0.055) / 1.055, 2.4) }
 }
 
-/// The light of each of the 256 values of a channel. A table, since a power costs as much as a hundred additions.
+/// The light of each of the 256 values of a channel. A table, since a power costs as much as a
+/// hundred additions.
 static LIGHT: LazyLock<[f64; 256]> = LazyLock::new(|| from_fn(|value| light_of(value as f64 / 255.0)));
 
-/// The light half-way, in stored numbers, between each value and the next: from there on the next one is nearer.
+/// The light half-way, in encoded values, between each value and the next: from there on the next
+/// one is nearer.
 static BORDERS: LazyLock<[f64; 255]> =
     LazyLock::new(|| from_fn(|value| light_of((value as f64 + 0.5) / 255.0)));
 
-/// For each of 4096 equal steps of light, the value of its darkest light. No step holds more than one border, so that the
-/// value of any light in it is this one or the next.
+/// For each of 4096 equal steps of light, the value of its darkest light. No step holds more than
+/// one border, so that the value of any light in it is this one or the next.
 static STEPS: LazyLock<[u8; 4096]> =
     LazyLock::new(|| from_fn(|step| BORDERS.partition_point(|&border| border <= step as f64 / 4096.0) as u8));
 // ANCHOR_END: tables
 
-/// Stored channels, whole numbers in 0..=255 → light in 0..=1. Fractions are cut off, values outside limited.
+/// Stored channels, whole numbers in 0..=255 → light in 0..=1. Fractions are cut off, values outside clamped.
 #[must_use]
 #[inline]
 pub fn decode<R: Real>(stored: [R; 3]) -> [R; 3] {

@@ -83,13 +83,13 @@ pub struct Frustum {
 
 impl Frustum {
     // ANCHOR: project
-    /// Projects so that the frustum becomes the cube −ω ≤ x, y, z ≤ ω: camera space → clip space.
+    /// Projects so that the frustum becomes the cube −w ≤ x, y, z ≤ w: camera space → clip space.
     ///
     /// ```text
     ///   x′ = 2 n x / (r − l) − (r + l) / (r − l) · z
     ///   y′ = 2 n y / (t − b) − (t + b) / (t − b) · z
     ///   z′ = (f + n) / (f − n) · z + 2 n f / (n − f)
-    ///   ω′ = z
+    ///   w′ = z
     /// ```
     ///
     /// After the divide z is a + b/z: −1 on the near plane, 1 on the far plane. Source: book, section 8.2.
@@ -142,7 +142,7 @@ impl Frustum {
         Self { left: -right, right, bottom: -top, top, near, far }
     }
 
-    /// The same for 0 ≤ z ≤ ω, the depth range of Direct3D: z′ = f / (f − n) · (z − n).
+    /// The same for 0 ≤ z ≤ w, the depth range of Direct3D: z′ = f / (f − n) · (z − n).
     #[must_use]
     pub fn project_zero_to_one(&self, view: DVec3) -> DVec4 {
         let clip = self.project(view);
@@ -245,8 +245,8 @@ fn rows(rows: [[f64; 4]; 4]) -> DMat4 {
 /// Moves by a vector. Book, section 10.3.
 ///
 /// ```text
-///   ┌ 1 0 0 a ┐        points (ω = 1) move,
-///   │ 0 1 0 b │        directions (ω = 0) do not
+///   ┌ 1 0 0 a ┐        points (w = 1) move,
+///   │ 0 1 0 b │        directions (w = 0) do not
 ///   │ 0 0 1 c │
 ///   └ 0 0 0 1 ┘
 /// ```
@@ -270,7 +270,8 @@ pub fn scale(by: DVec3) -> DMat4 {
     rows([[a, 0.0, 0.0, 0.0], [0.0, b, 0.0, 0.0], [0.0, 0.0, c, 0.0], [0.0, 0.0, 0.0, 1.0]])
 }
 
-/// Turns about the z axis, +x towards +y: counter-clockwise on the screen. Radians. The book's `RotateZ`, section 10.4.
+/// Turns about the z axis, +x towards +y: counter-clockwise on the screen. Radians. The book's
+/// `RotateZ`, section 10.4.
 ///
 /// ```text
 ///   ┌ cos −sin 0 0 ┐        y
@@ -284,7 +285,8 @@ pub fn rotate_x_to_y(angle: f64) -> DMat4 {
     rows([[c, -s, 0.0, 0.0], [s, c, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]])
 }
 
-/// Turns about the x axis, +z towards +y: what is farther away comes up. Radians. The book's `RotateX`, section 10.4.
+/// Turns about the x axis, +z towards +y: what is farther away comes up. Radians. The book's
+/// `RotateX`, section 10.4.
 ///
 /// ```text
 ///   ┌ 1   0    0  0 ┐        y
@@ -298,8 +300,8 @@ pub fn rotate_z_to_y(angle: f64) -> DMat4 {
     rows([[1.0, 0.0, 0.0, 0.0], [0.0, c, s, 0.0], [0.0, -s, c, 0.0], [0.0, 0.0, 0.0, 1.0]])
 }
 
-/// Turns about the y axis, +x towards +z: what is on the right goes away from us. Radians. The book's `RotateY`,
-/// section 10.4.
+/// Turns about the y axis, +x towards +z: what is on the right goes away from us. Radians. The
+/// book's `RotateY`, section 10.4.
 ///
 /// ```text
 ///   ┌ cos  0 −sin 0 ┐        z
@@ -313,20 +315,22 @@ pub fn rotate_x_to_z(angle: f64) -> DMat4 {
     rows([[c, 0.0, -s, 0.0], [0.0, 1.0, 0.0, 0.0], [s, 0.0, c, 0.0], [0.0, 0.0, 0.0, 1.0]])
 }
 
-/// A transformation as seen from a point: T(p) · M · T(−p). A rotation then turns about `pivot`, a scale grows away from
-/// it. Book, section 10.5.
+/// A transformation as seen from a point: T(p) · M · T(−p). A rotation then turns about `pivot`, a
+/// scale grows away from it. Book, section 10.5.
 #[must_use]
 pub fn about(pivot: DVec3, transformation: DMat4) -> DMat4 {
     translate(pivot) * transformation * translate(-pivot)
 }
+// ANCHOR_END: matrices
 
+// ANCHOR: look_at
 /// `view_from_world` of a camera at `eye` that looks towards `target`, with `up` upwards in the picture.
 ///
 /// ```text
-///   ┌ right.x    right.y    right.z    −right·eye   ┐     forward = target − eye     (the camera's +z)
-///   │ up.x       up.y       up.z       −up·eye      │     right   = up × forward     (+x)
-///   │ forward.x  forward.y  forward.z  −forward·eye │     up      = forward × right  (+y)
-///   └    0          0          0           1        ┘     each of length 1
+///   ┌ right.x    right.y    right.z    −right·eye   ┐   forward = target − eye     (+z)
+///   │ up.x       up.y       up.z       −up·eye      │   right   = up × forward     (+x)
+///   │ forward.x  forward.y  forward.z  −forward·eye │   up      = forward × right  (+y)
+///   └    0          0          0           1        ┘   each of length 1
 /// ```
 ///
 /// The eye is subtracted, not the target: the eye becomes the origin. Left-handed. Not finite if `up` points along the
@@ -342,8 +346,9 @@ pub fn look_at(eye: DVec3, target: DVec3, up: DVec3) -> DMat4 {
     let row = |axis: DVec3| axis.extend(-axis.dot(eye)).to_array();
     rows([row(right), row(up), row(forward), [0.0, 0.0, 0.0, 1.0]])
 }
-// ANCHOR_END: matrices
+// ANCHOR_END: look_at
 
+// ANCHOR: normal_matrix
 /// The matrix for normals that belongs to a matrix for points: the inverse of its transpose.
 ///
 /// A normal n is perpendicular to every direction t of a surface, n·t = 0. When t becomes M t, n must become
@@ -353,6 +358,7 @@ pub fn look_at(eye: DVec3, target: DVec3, up: DVec3) -> DMat4 {
 pub fn normal_matrix(world_from_model: DMat4) -> DMat3 {
     DMat3::from_mat4(world_from_model).inverse().transpose()
 }
+// ANCHOR_END: normal_matrix
 
 #[cfg(test)]
 mod tests {

@@ -41,6 +41,15 @@ fn pages() -> Vec<PathBuf> {
     pages
 }
 
+/// The pages of a chapter: the one with the name of its program, and those beside it with the same number.
+fn pages_of(program: &str) -> String {
+    let (number, _) = program.split_once('_').expect("a number");
+    let is_of_chapter = |page: &&PathBuf| {
+        page.file_name().is_some_and(|name| name.to_string_lossy().starts_with(&format!("{number}_")))
+    };
+    pages().iter().filter(is_of_chapter).map(|page| read(page)).collect()
+}
+
 /// The parts of a text between a beginning and an end.
 fn between<'a>(text: &'a str, begin: &'a str, end: &'a str) -> impl Iterator<Item = &'a str> {
     text.split(begin).skip(1).filter_map(move |rest| rest.split_once(end).map(|(part, _)| part))
@@ -126,7 +135,7 @@ fn every_program_and_every_variant_has_its_line() {
         assert!(readme.contains(&format!("`{}`", chapter.name)), "README: {}", chapter.name);
         assert!(readme.contains(chapter.question), "README: {}", chapter.question);
         assert!(summary.contains(&format!("{}.md", chapter.name)), "SUMMARY: {}", chapter.name);
-        let page = read(&root().join(format!("docs/src/{}.md", chapter.name)));
+        let page = pages_of(chapter.name);
         for variant in chapter.variants {
             assert!(page.contains(&format!("`{}`", variant.name)), "{}.md: {}", chapter.name, variant.name);
         }
@@ -136,7 +145,7 @@ fn every_program_and_every_variant_has_its_line() {
 #[test]
 fn pages_count_the_pixels_in_which_mistake_and_remedy_differ() {
     for (chapter, _) in CHAPTERS {
-        let page = read(&root().join(format!("docs/src/{}.md", chapter.name)));
+        let page = pages_of(chapter.name);
         for variant in chapter.variants {
             let Mistake::RemediedBy(remedy) = variant.mistake else { continue };
             let picture = |variant: &Variant| {

@@ -1,7 +1,7 @@
 //! # Chapter 6: the z-buffer
 //!
 //! **Which surface is in front?** The painter draws what is far first. That fails as soon as two surfaces pass through
-//! one another. The z-buffer asks the question anew at every pixel.
+//! one another. The z-buffer decides anew at every pixel.
 //!
 //! New here: a depth for each pixel, and the depth test (`lib/depth.rs`). The depth is interpolated like any other
 //! value, by chapter 5's formula. The figures: `surfaces.rs`, `precision.rs`, `frames.rs`. Book: chapter 6.
@@ -20,7 +20,7 @@ pub(crate) const CHAPTER: Chapter = Chapter {
     variants: &[
         Variant::with_knobs("intersecting", surfaces::intersecting, surfaces::PIERCING, "the same with a z-buffer: each triangle is seen where it is nearer, and they meet in a line")
             .source("section 6.2, Figure 6-3"),
-        Variant::with_knobs("z-buffer", surfaces::z_buffer, surfaces::SQUARES, "the tilted square before a square that faces us: drawn first, and still in front where it is nearer")
+        Variant::with_knobs("z-buffer", surfaces::z_buffer, surfaces::SQUARES, "a tilted square and one that faces us: the tilted one is drawn first, and still in front where it is nearer")
             .source("section 6.2, Figure 6-5"),
         Variant::new("painter", surfaces::painter, "three squares drawn from far to near, without a depth test: each covers what is behind it")
             .source("section 6.1, Figure 6-2"),
@@ -29,12 +29,12 @@ pub(crate) const CHAPTER: Chapter = Chapter {
         Variant::with_knobs("painter-green-first", surfaces::painter_green_first, surfaces::PIERCING, "the same, green drawn first: no order is right")
             .source("section 6.1, Figure 6-3").remedied_by("intersecting"),
         Variant::with_knobs("depth", precision::depth, precision::STEPS, "a z-buffer, as hardware stores it, in 16 grays: black is near (1), white is far (12); most of them lie close by"),
-        Variant::with_knobs("w-buffer", precision::w_buffer, precision::STEPS, "the same scene with ω stored, in 16 grays: black is near (1), white is far (12); each stands for the same distance"),
+        Variant::with_knobs("w-buffer", precision::w_buffer, precision::STEPS, "the same scene with w stored, in 16 grays: black is near (1), white is far (12); each stands for the same distance"),
         Variant::with_knobs("steps", precision::steps, precision::ALONG_AXIS, "the distances that 4 bits tell apart, the eye on the left: above by a z-buffer, below by a w-buffer; in the orange step red and green have one depth")
             .size(640, 320),
         Variant::with_knobs("uncleared", frames::uncleared, frames::FRAMES, "the second frame of a moving square, depths of the first not cleared: the old square cuts a hole into the new one")
             .source("section 6.2, section 9.4.1").remedied_by("cleared"),
-        Variant::with_knobs("cleared", frames::cleared, frames::FRAMES, "the same frame with the depths cleared before it: the square is whole").source("section 6.2"),
+        Variant::with_knobs("cleared", frames::cleared, frames::FRAMES, "the same frame, its depths cleared first: the square is whole").source("section 6.2"),
     ],
 };
 

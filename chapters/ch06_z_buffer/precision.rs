@@ -26,8 +26,8 @@ pub(super) const STEPS: &[Knob] = &[
 ];
 
 // ANCHOR: depth
-/// A floor with posts, from the distance 1 to 12; each pixel's gray is what `encode` makes of its distance, 0..=1, in
-/// as many steps as so many bits have.
+/// A floor with posts, from the distance 1 to 12; each pixel's gray is what `encode` makes of its
+/// distance, 0..=1, in as many steps as so many bits have.
 fn encoded_depths(framebuffer: &mut Framebuffer, bits: i32, far: f64, encode: impl Fn(f64) -> f64) {
     let mut target = Target::like(framebuffer);
     target.clear(Color::BLACK, FAR_AWAY);
@@ -55,13 +55,13 @@ fn step_of(depth: f64, bits: i32) -> i32 {
     (depth * steps).floor().clamp(0.0, steps - 1.0) as i32
 }
 
-/// As hardware stores it: Q (ω − n) / ω.
+/// As hardware stores it: Q (w − n) / w.
 pub(super) fn depth(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     let (near, far) = (knobs.number("near"), knobs.number("far"));
     encoded_depths(framebuffer, knobs.whole("bits"), far, |w| z_from_w(w, near, far));
 }
 
-/// ω itself, scaled to 0..=1.
+/// w itself, scaled to 0..=1.
 pub(super) fn w_buffer(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     let (near, far) = (knobs.number("near"), knobs.number("far"));
     encoded_depths(framebuffer, knobs.whole("bits"), far, |w| linear_from_w(w, near, far));

@@ -24,7 +24,7 @@ pub(super) const SQUARES: &[Knob] = &[
         150.0,
         [90.0, 340.0],
         "",
-        "the square that faces us goes away: the line in which they meet wanders to the right",
+        "the square that faces us goes away: the line in which they meet moves to the right",
     ),
 ];
 
@@ -41,7 +41,7 @@ pub(super) const PIERCING: &[Knob] = &[
         0.0,
         [-220.0, 220.0],
         "",
-        "the red triangle goes away: the line in which they meet wanders, until green hides red in any order",
+        "the red triangle goes away: the line in which they meet moves, until green hides red in any order",
     ),
 ];
 
@@ -55,21 +55,22 @@ type Triangle<const N: usize> = [ScreenVertex<Projected<f64, N>>; 3];
 fn vertex([x, y, z]: [f64; 3], [u, v]: [f64; 2]) -> ScreenVertex<Projected<f64, 3>> {
     const NEAR: f64 = 80.0;
     let mut clip = perspective(dvec3(x, y, z), NEAR);
-    // So that the divide leaves the depth: z · z / ω = z.
+    // So that the divide leaves the depth: z · z / w = z.
     clip.z = DepthEncoding::ViewZ.clip_z(z, NEAR, FAR_AWAY);
     let screen = perspective_divide(clip);
     ScreenVertex { position: screen.truncate(), varyings: Projected { w: clip.w, values: [u, v, screen.z] } }
 }
 // ANCHOR_END: vertex
 
-/// x and z of the right side of a square of side 480, whose left side is at x = 0 and z = 100.
+/// x and z of the right edge of a square of side 480, whose left edge is at x = 0 and z = 100.
 fn tilted_side(degrees: f64) -> [f64; 2] {
     let (sin, cos) = libm::sincos(degrees * PI / 180.0);
     [480.0 * cos, 100.0 + 480.0 * sin]
 }
 
 // ANCHOR: z_buffer
-/// Draws a triangle where it passes the test; its last value is its depth, `color_of` makes a color of all of them.
+/// Draws a triangle where it passes the test; its last value is its depth, `color_of` makes a color
+/// of all of them.
 pub(super) fn draw<const N: usize>(
     target: &mut Target,
     triangle: Triangle<N>,
@@ -118,7 +119,7 @@ pub(super) fn seen_from_middle(x: f64, y: f64, z: f64) -> ScreenVertex<Projected
     ScreenVertex { position, varyings: Projected { w: clip.w, values: [z] } }
 }
 
-/// Draws an upright square, its lower left corner given, as two triangles.
+/// Draws a square that faces us, its lower left vertex given, as two triangles.
 pub(super) fn draw_square(target: &mut Target, [x, y, z]: [f64; 3], side: f64, test: DepthTest, flat: Color) {
     let corner = |i: f64, j: f64| seen_from_middle(x + i * side, y + j * side, z);
     draw(target, [corner(0.0, 0.0), corner(1.0, 0.0), corner(0.0, 1.0)], test, |_| flat);
@@ -143,7 +144,8 @@ pub(super) fn painter(framebuffer: &mut Framebuffer) {
 // ANCHOR_END: painter
 
 // ANCHOR: intersecting
-/// Two triangles that pierce each other: the red one is near at its tip on the right, the green one on the left.
+/// Two triangles that pierce each other: the red one is near at its tip on the right, the green one
+/// on the left.
 fn piercing(framebuffer: &mut Framebuffer, knobs: &Knobs, red_first: bool, test: DepthTest) {
     let (tips, red) = (knobs.number("tips"), knobs.number("red"));
     let red = [

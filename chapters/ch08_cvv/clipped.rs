@@ -49,7 +49,7 @@ pub(super) const BEGIN: &[Knob] = &[Knob::number(
     -9.0,
     [-20.0, 18.0],
     "",
-    "where the floor begins: before the eye, too, 'divide-first' cuts in the wrong place; from 11 on nothing is cut",
+    "where the floor begins: in front of the eye, too, 'divide-first' cuts in the wrong place; from 11 on nothing is cut",
 )];
 
 /// The view with some of its borders in other places.
@@ -77,7 +77,7 @@ pub(super) fn draw<const N: usize>(
     }
 }
 
-/// A corner in camera space, and its texture coordinates.
+/// A vertex in camera space, and its texture coordinates.
 type SpaceCorner = ([f64; 3], [f64; 2]);
 
 /// Draws triangles into a cleared picture; `project` takes camera space to clip space.
@@ -138,7 +138,7 @@ pub(super) fn clipped(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     );
 }
 
-/// The same with z from 0 to ω.
+/// The same with z from 0 to w.
 pub(super) fn zero_to_one(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     let view = view(knobs);
     draw_all(

@@ -18,7 +18,7 @@ pub(crate) const CHAPTER: Chapter = Chapter {
     name: "ch08_cvv",
     question: "What of the world gets into the picture?",
     variants: &[
-        Variant::with_knobs("clipped", clipped::clipped, clipped::BORDERS, "a triangle that is larger than the view, one corner nearer than the near plane: cut off at the borders of the picture")
+        Variant::with_knobs("clipped", clipped::clipped, clipped::BORDERS, "a triangle that is larger than the view, one vertex nearer than the near plane: cut off at the borders of the picture")
             .source("section 8.3, Figure 8-9"),
         Variant::with_knobs("ndc", clipped::ndc, clipped::BORDERS, "a triangle that fits: the frustum's borders become the borders of the picture").source("section 8.2, Figure 8-6"),
         Variant::with_knobs("planes", volume::planes, volume::PLANES, "the polygon before clipping and after each plane: left, right, bottom, top, near, far; the square is the view")
@@ -27,10 +27,10 @@ pub(crate) const CHAPTER: Chapter = Chapter {
             .source("section 8.1, Figure 8-4").size(760, 400),
         Variant::with_knobs("outside", outside::outside, outside::OUTSIDE, "left: the picture; right: the same world and the view frustum from outside. What clipping leaves is bright, what it cuts away is dim")
             .source("section 8.1").size(808, 300),
-        Variant::with_knobs("divide-first", clipped::divide_first, clipped::BEGIN, "a floor that passes under the eye, tested after the divide: behind us the comparison turns round, and the floor is cut off far before our feet")
+        Variant::with_knobs("divide-first", clipped::divide_first, clipped::BEGIN, "a floor that passes under the eye, tested after the divide: behind us the comparison is reversed, and the floor is cut off far in front of our feet")
             .source("section 8.3").remedied_by("clip-first"),
         Variant::with_knobs("clip-first", clipped::clip_first, clipped::BEGIN, "the same floor, clipped before the divide: it comes up to the near plane, at the lower border").source("section 8.3"),
-        Variant::with_knobs("zero-to-one", clipped::zero_to_one, clipped::BORDERS, "Direct3D's range, 0 ≤ z ≤ ω: another projection, another near plane, the same picture as 'clipped'"),
+        Variant::with_knobs("zero-to-one", clipped::zero_to_one, clipped::BORDERS, "Direct3D's range, 0 ≤ z ≤ w: another projection, another near plane, the same picture as 'clipped'"),
     ],
 };
 

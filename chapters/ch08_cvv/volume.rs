@@ -40,8 +40,8 @@ fn draw_line(framebuffer: &mut Framebuffer, a: DVec2, b: DVec2, color: Color) {
 }
 
 // ANCHOR: plane_by_plane
-/// The polygon in NDC after no plane, one, two, … six; in each panel the view is the square in the middle. A plane that
-/// is switched off cuts nothing.
+/// The polygon in NDC after no plane, one, two, … six; in each panel the view is the square in the
+/// middle. A plane that is switched off cuts nothing.
 pub(super) fn planes(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     const PANEL: f64 = 200.0;
     framebuffer.clear(Color::gray(24));
@@ -73,7 +73,8 @@ pub(super) fn planes(framebuffer: &mut Framebuffer, knobs: &Knobs) {
 // ANCHOR_END: plane_by_plane
 
 // ANCHOR: frustum
-/// Rows of points at equal steps of depth, from above: in camera space on the left, in NDC on the right.
+/// Rows of points at equal steps of depth, from above: in camera space on the left, in NDC on the
+/// right.
 pub(super) fn frustum(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     const ROWS: [Color; 5] = [
         Color::rgb(255, 90, 80),

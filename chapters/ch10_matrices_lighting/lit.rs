@@ -49,7 +49,8 @@ impl Shader<5> for Lit {
     }
 
     fn vertex(&self, vertex: &ModelVertex) -> ClipVertex<5> {
-        // A normal is a direction: with ω = 0 it turns and does not move.
+        // A normal is a direction: with w = 0 it turns and does not move. A rotation is its own
+        // inverse transpose.
         let normal = self.view_from_model * vertex.normal.extend(0.0);
         ClipVertex {
             position: self.clip_from_model * vertex.position.extend(1.0),

@@ -1,4 +1,4 @@
-//! What matrices do: turn, turn about a point, and put the eye where one likes.
+//! What matrices do: turn, turn about a point, and put the eye anywhere.
 
 use glam::{DMat4, DVec3, dvec2, dvec3};
 use rasterbook::cull::CullMode;
@@ -50,7 +50,7 @@ pub(super) const CAMERA: &[Knob] = &[
         23.5,
         [2.0, 88.0],
         "°",
-        "the eye goes up: upright edges lean outwards more and more",
+        "the eye goes up: vertical edges lean outwards more and more",
     ),
     Knob::number("distance", 11.0, [7.5, 30.0], "", "the eye goes away: what is near shrinks most"),
     Knob::number("field-of-view", 40.0, [10.0, 100.0], "°", "the view widens, and everything shrinks alike"),
@@ -75,7 +75,7 @@ impl Shader<2> for Textured {
 }
 
 // ANCHOR: rotation
-/// A triangle turns about the upright axis through (0, 0, 4).
+/// A triangle turns about the vertical axis through (0, 0, 4).
 pub(super) fn rotation(canvas: &mut Canvas) {
     let camera = Frustum { left: -3.2, right: 3.2, bottom: -2.4, top: 2.4, near: 1.0, far: 10.0 };
     let axis = dvec3(0.0, 0.0, 4.0);
@@ -123,7 +123,8 @@ const ARROW: [[f64; 2]; 9] = [
 ];
 
 // ANCHOR: pivot
-/// Nine arrows, each turned by a step more: about the origin on the left, about its middle, or another point, on the right.
+/// Nine arrows, each turned by a step more: about the origin on the left, about its middle, or
+/// another point, on the right.
 pub(super) fn pivot(canvas: &mut Canvas) {
     canvas.clear(&RenderState::default());
     let angle = canvas.knobs.number("step");

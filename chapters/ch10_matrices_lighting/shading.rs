@@ -1,4 +1,4 @@
-//! Where light is computed (faces, corners, pixels), which highlight there is, and how normals are turned.
+//! Where light is computed (faces, vertices, pixels), which highlight there is, and how normals are turned.
 
 use std::f64::consts::{PI, TAU};
 
@@ -119,7 +119,8 @@ fn faceted(ball: &Mesh<Corner>) -> Mesh<Corner> {
 /// Where light is computed.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Frequency {
-    /// In the vertex shader; colors are interpolated (Gouraud, 1971). With the normals of faces: flat shading.
+    /// In the vertex shader; colors are interpolated (Gouraud, 1971). With the normals of faces:
+    /// flat shading.
     Vertex,
     /// In the fragment shader; normals are interpolated (Phong, 1975).
     Fragment,
@@ -226,7 +227,7 @@ pub(super) fn flat(canvas: &mut Canvas) {
     two_balls(canvas, Frequency::Vertex, true);
 }
 
-/// Light at the corners.
+/// Light at the vertices.
 pub(super) fn gouraud(canvas: &mut Canvas) {
     two_balls(canvas, Frequency::Vertex, false);
 }
@@ -242,7 +243,8 @@ pub(super) fn blinn_phong(canvas: &mut Canvas) {
 }
 
 // ANCHOR: highlights
-/// Above, a coarse and a fine ball; below, a dull floor-like ball under light from behind, with a broad highlight.
+/// Above, a coarse and a fine ball; below, a dull floor-like ball under light from behind, with a
+/// broad highlight.
 fn highlights(canvas: &mut Canvas, highlight: Highlight) {
     canvas.clear(&state());
     let [exponent, broad] = ["exponent", "broad-exponent"].map(|name| canvas.knobs.number(name));
@@ -251,7 +253,8 @@ fn highlights(canvas: &mut Canvas, highlight: Highlight) {
         let shader = ball_at(dvec3(x, 1.0, 6.0), 1.35, color, Frequency::Fragment, shiny, light);
         canvas.draw(&ball(rings, segments), &shader, &state());
     }
-    // The flattened ball below is so large that we see a slope of it, and the light comes low from behind us.
+    // The flattened ball below is so large that we see a slope of it, and the light comes low from
+    // behind us.
     let broad = Material { ambient: 0.05, diffuse: 0.25, specular: 0.8, exponent: broad, highlight };
     let low = Light::Directional(normalize([-0.9, 0.25, -0.6]));
     let view_from_model = translate(dvec3(0.0, -2.2, 6.0)) * scale(dvec3(3.2, 1.2, 2.0));
@@ -265,7 +268,7 @@ fn highlights(canvas: &mut Canvas, highlight: Highlight) {
 // ANCHOR_END: highlights
 
 // ANCHOR: distance
-/// Two rows of balls: parallel light above, a lamp before the ball on the left below.
+/// Two rows of balls: parallel light above, a lamp in front of the ball on the left below.
 pub(super) fn distance(canvas: &mut Canvas) {
     canvas.clear(&state());
     let dull = Material { highlight: Highlight::None, ambient: 0.1, diffuse: 0.9, ..SHINY };

@@ -1,4 +1,4 @@
-//! What the numbers of a color mean: light computed with stored numbers, and with amounts of light.
+//! What the numbers of a color mean: light computed with encoded values, and in linear light.
 
 use glam::{DVec2, DVec4, dvec4};
 use rasterbook::figure::{Canvas, Knob};
@@ -11,21 +11,21 @@ pub(super) const KNOBS: &[Knob] = &[Knob::whole(
     2,
     [2, 6],
     "columns",
-    "one column of so many is white, and the gray below has as much of it: only amounts of light keep them alike",
+    "one column of so many is white, and the gray below has as much of it: only in linear light do they stay alike",
 )];
 
 // ANCHOR: space
 /// In which numbers light is added and multiplied.
 #[derive(Clone, Copy)]
 enum Space {
-    /// The stored ones, a mistake: twice the number is more than four times the light.
+    /// The encoded ones, a mistake: twice the number is more than four times the light.
     Gamma,
-    /// Amounts of light.
+    /// Linear light.
     Linear,
 }
 
 impl Space {
-    /// A stored color, 0..=255 → what is computed with, 0..=1.
+    /// An encoded color, 0..=255 → what is computed with, 0..=1.
     fn enter<R: Real>(self, stored: [R; 3]) -> [R; 3] {
         match self {
             Self::Gamma => stored.map(|channel| channel / R::of(255.0)),
@@ -50,7 +50,7 @@ enum Sample {
     Ball,
     /// Red on the left, green on the right, and their mixtures.
     Mixture,
-    /// Upright lines, one pixel wide, white and one black, or more of them.
+    /// Vertical lines, one pixel wide, white and one black, or more of them.
     Stripes,
     /// The mean of these lines.
     Mean,
@@ -59,7 +59,7 @@ enum Sample {
 struct Rectangle {
     space: Space,
     sample: Sample,
-    /// The part of the lines that is white.
+    /// The fraction of the lines that is white.
     white: f64,
 }
 
@@ -130,12 +130,12 @@ fn draw(canvas: &mut Canvas, space: Space) {
     }
 }
 
-/// With stored numbers.
+/// With encoded values.
 pub(super) fn gamma_space(canvas: &mut Canvas) {
     draw(canvas, Space::Gamma);
 }
 
-/// With amounts of light.
+/// In linear light.
 pub(super) fn linear_space(canvas: &mut Canvas) {
     draw(canvas, Space::Linear);
 }

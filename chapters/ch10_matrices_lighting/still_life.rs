@@ -264,7 +264,7 @@ pub(super) fn still_life(canvas: &mut Canvas) {
     let [wood, numbers] =
         ["wood.png", "numbers.png"].map(|name| MipMaps::new(&assets::texture(name).expect("an asset")));
     let mut load = LoadOp::Clear;
-    // First what the board reflects, upside down: fronts run the other way round there.
+    // First what the board reflects, upside down: fronts run the other way there.
     let mirror = scale(dvec3(1.0, -1.0, 1.0));
     for (reflect, front_face) in [(mirror, Winding::Clockwise), (DMat4::IDENTITY, Winding::CounterClockwise)]
     {

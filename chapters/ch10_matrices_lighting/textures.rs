@@ -96,7 +96,7 @@ impl Shader<2> for Floor {
 }
 // ANCHOR_END: floor
 
-/// The color of a level: round the color wheel from red.
+/// The color of a level: around the color wheel from red.
 fn tint(level: usize) -> [f64; 3] {
     [0.0, 1.0 / 3.0, 2.0 / 3.0].map(|turn| 127.5 + 127.5 * libm::cos(TAU * (level as f64 / 8.0 - turn)))
 }
@@ -111,7 +111,7 @@ fn sky() -> RenderState {
     RenderState { clear_color: Color::rgb(150, 190, 230), ..RenderState::default() }
 }
 
-/// A part of the floor; `uv` gives the texture coordinates at its corners.
+/// A part of the floor; `uv` gives the texture coordinates at its vertices.
 fn floor(canvas: &mut Canvas, shader: &Floor, [left, right]: [f64; 2], uv: impl Fn(f64, f64) -> [f64; 2]) {
     let corners = [[left, -10.0], [right, -10.0], [right, 400.0], [left, 400.0]];
     let vertices = corners.map(|[x, z]| ([x, z], uv(x, z))).to_vec();
@@ -157,8 +157,8 @@ pub(super) fn mip_levels(canvas: &mut Canvas) {
 }
 
 // ANCHOR: address_modes
-/// Three floors side by side, one for each address mode; the texture itself lies in the middle of each, a
-/// little in front of us.
+/// Three floors side by side, one for each address mode; the texture itself lies in the middle of
+/// each, a little in front of us.
 pub(super) fn address_modes(canvas: &mut Canvas) {
     canvas.clear(&sky());
     let size = canvas.knobs.number("size");

@@ -1,4 +1,4 @@
-//! A model of one's own, seen from where one likes: framed by its bounds, lit from the side, drawn from both sides.
+//! A model of your own, seen from anywhere: framed by its bounds, lit from the side, drawn from both sides.
 
 use std::array::from_fn;
 
@@ -22,7 +22,7 @@ pub(super) const KNOBS: &[Knob] = &[
         35.0,
         [-180.0, 180.0],
         "°",
-        "the eye goes round: a highlight wanders over the surface, the dark side stays where it is",
+        "the eye goes round: a highlight moves over the surface, the dark side stays where it is",
     ),
     Knob::number("elevation", 25.0, [-89.0, 89.0], "°", "the eye goes up: the top comes into view"),
     light_azimuth(-30.0),

@@ -81,6 +81,7 @@ pub struct EdgeFunction {
 }
 
 impl EdgeFunction {
+    // ANCHOR: edge_value
     /// The function of the edge from a to b: exact, if neither is farther than 2²⁴ from the origin along x or y, as
     /// [`snap`] sees to. Beyond 2³⁰ it may overflow.
     #[must_use]
@@ -97,10 +98,11 @@ impl EdgeFunction {
     pub fn at(&self, [x, y]: Subpixel) -> i64 {
         self.step_x * x + self.step_y * y + self.constant
     }
+    // ANCHOR_END: edge_value
 
     /// Whether points on the edge itself belong to the triangle on its left: it is a top edge or a left edge.
     ///
-    /// Against the clock round the triangle, a top edge runs to the left, and a left edge runs down.
+    /// Counter-clockwise round the triangle, a top edge runs to the left, and a left edge runs down.
     ///
     /// ```text
     ///             top
@@ -147,6 +149,7 @@ impl EdgeFunction {
     }
 }
 
+// ANCHOR: top_left
 /// The rule by itself, for whole numbers of any size.
 #[inline]
 pub(crate) fn is_top_left<I: PartialOrd + Default>(step_x: I, step_y: I) -> bool {
@@ -154,6 +157,7 @@ pub(crate) fn is_top_left<I: PartialOrd + Default>(step_x: I, step_y: I) -> bool
     let (runs_down, is_level, runs_left) = (step_x > zero, step_x == zero, step_y < zero);
     runs_down || (is_level && runs_left)
 }
+// ANCHOR_END: top_left
 // ANCHOR_END: edge_function
 
 /// How the weights of the second and the third of three vertices change from pixel to pixel.
@@ -304,6 +308,7 @@ impl Coverage {
         })
     }
 
+    // ANCHOR: covered_columns
     /// Which of some columns of a row are covered: they lie side by side.
     #[must_use]
     #[inline]
@@ -316,6 +321,7 @@ impl Coverage {
         let [a, b, c] = from_fn(|i| self.edges[i].columns(columns.clone(), values[i]));
         a.start.max(b.start).max(c.start)..a.end.min(b.end).min(c.end)
     }
+    // ANCHOR_END: covered_columns
 }
 // ANCHOR_END: coverage
 
@@ -357,7 +363,7 @@ mod tests {
         grid(&counts)
     }
 
-    /// The corners of a square whose sides run through the centers of pixels.
+    /// The vertices of a square whose edges run through the centers of pixels.
     const A: (f64, f64) = (1.5, 0.5);
     const B: (f64, f64) = (6.5, 0.5);
     const C: (f64, f64) = (6.5, 5.5);

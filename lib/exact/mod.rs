@@ -9,13 +9,13 @@
 //! center (i + ½, j + ½). After clipping and the viewport, and before culling, x and y of each vertex are rounded to the
 //! nearest multiple of 1/256, halves away from zero. All decisions are made on these whole numbers, in 64-bit integers,
 //! which cannot overflow. The facing of a triangle is the sign of its area there; one without area is not drawn. A
-//! sample inside is covered; one on an edge is covered if the edge is a *top* edge (level, the triangle below it) or a
-//! *left* edge (not level, the triangle on its right), as seen on the screen; one on two edges, if both are.
+//! sample inside is covered; one on an edge is covered if the edge is a *top* edge (horizontal, the triangle below it)
+//! or a *left* edge (not horizontal, the triangle on its right), as seen on the screen; one on two edges, if both are.
 //!
 //! **Which values.** Weights are E · (1 / sum of the three E), E the exact values of the edge functions at the center,
-//! converted, divided and multiplied with one rounding each. In the first covered pixel of a row 1/ω, V/ω and the depth
+//! converted, divided and multiplied with one rounding each. In the first covered pixel of a row 1/w, V/w and the depth
 //! are interpolated by these weights; in the nth after it they are that plus n times their change from pixel to pixel,
-//! which comes from the change of E in the same way. V/ω is V · (1/ω), and V = (V/ω) · 1/(1/ω). The depth is linear on the
+//! which comes from the change of E in the same way. V/w is V · (1/w), and V = (V/w) · 1/(1/w). The depth is linear on the
 //! screen. All arithmetic is that of the number type: four operations, one rounding each.
 //!
 //! **Which rounding.** To a channel ½ is added, and the fraction of the sum cut off: the nearest of 0..=255, halves upwards.

@@ -30,8 +30,8 @@ pub const CENTER: [Subpixel; 1] = grid::<1>(1);
 pub const GRID_2X2: [Subpixel; 4] = grid::<4>(2);
 /// Sixteen samples, in four columns and four rows.
 pub const GRID_4X4: [Subpixel; 16] = grid::<16>(4);
-/// Four samples, each in a column and a row of its own, so that nearly level and nearly upright edges have four steps
-/// instead of two.
+/// Four samples, each in a column and a row of its own, so that nearly horizontal and nearly vertical edges have four
+/// steps instead of two: a *rotated grid*.
 ///
 /// ```text
 ///   ┌────────────────┐

@@ -38,7 +38,7 @@ pub(super) struct TriangleSetup {
     origin: f64x4,
     right: f64x4,
     up: f64x4,
-    /// What is above the line of the fraction in row 0, and how it changes upwards.
+    /// The numerator of the quotient in row 0, and how it changes upwards.
     above: f64x4,
     above_up: f64x4,
     one_over_step: f64x4,

@@ -1,4 +1,4 @@
-//! What vertices carry, packed: 1/ω, depth and V/ω side by side, eight numbers of one point at a time, where
+//! What vertices carry, packed: 1/w, depth and V/w side by side, eight numbers of one point at a time, where
 //! [`Lanes`] are one number of eight points.
 
 use std::array::from_fn;

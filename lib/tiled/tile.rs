@@ -38,7 +38,7 @@ pub(super) struct Tile<'a> {
 /// Fragments of small triangles that wait until there are eight of them.
 struct Queue {
     count: usize,
-    /// 1/ω, depth, V/ω of each fragment.
+    /// 1/w, depth, V/w of each fragment.
     packed: [f32x8; LANES],
     /// Where in the band each fragment is: an index.
     indices: [usize; LANES],
@@ -265,7 +265,7 @@ fn eight<T>(pixels: &mut [T], first: usize) -> &mut [T; LANES] {
     pixels[first..].first_chunk_mut().expect("a band has room for eight")
 }
 
-/// Asks for the same pixel of the next band, which is mostly cleared soon.
+/// Prefetches the same pixel of the next band, which is mostly cleared soon.
 ///
 /// Only a hint: the picture does not depend on it, and there need not be a next band.
 #[inline(always)]

@@ -1,4 +1,4 @@
-//! Vertices: shaded, divided by ω and snapped to the grid, each once, for all triangles that share it. On all threads.
+//! Vertices: shaded, divided by w and snapped to the grid, each once, for all triangles that share it. On all threads.
 
 use std::array::from_fn;
 
@@ -27,7 +27,7 @@ pub(super) struct Vertices {
     positions: Vec<SnappedPosition>,
     /// Which planes a vertex lies outside of, a bit each; and the bit below.
     outside: Vec<u8>,
-    /// 1/ω, depth, V/ω: as many blocks of eight numbers for a vertex as it takes.
+    /// 1/w, depth, V/w: as many blocks of eight numbers for a vertex as it takes.
     packed: Vec<f32x8>,
 }
 
@@ -283,7 +283,7 @@ fn rounded(numbers: f64x4) -> f64x4 {
 
 /// Whole numbers of at most 31 bits and a sign, such as positions are (25 bits), as integers.
 ///
-/// One addition, where `as` asks first whether the number fits.
+/// One addition, where `as` tests first whether the number fits.
 #[inline(always)]
 fn whole(numbers: f64x4) -> [i32; AT_A_TIME] {
     (numbers + f64x4::splat(NO_FRACTIONS)).to_array().map(|number| number.to_bits() as i32)
