@@ -43,7 +43,7 @@ use crate::target::Target;
 /// Fragments reach a pixel in the order of the triangles in the mesh; of a clipped triangle, in the order of its fan.
 ///
 /// # Panics
-/// If the planes of the target are not of the same size.
+/// If a pixel of the target has no depth: its plane of depths is smaller than that of colors.
 pub fn draw<S: Shader<N>, Z: Rasterizer, P: Probe + ?Sized, const N: usize>(
     mesh: &Mesh<S::Attributes>,
     shader: &S,

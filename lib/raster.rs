@@ -52,7 +52,7 @@ pub trait Rasterizer {
     /// Fragments reach a pixel in the order of their triangles.
     ///
     /// # Panics
-    /// If the planes of the target are not of the same size.
+    /// If a pixel of the target has no depth: its plane of depths is smaller than that of colors.
     fn draw<S: Shader<N>, P: Probe + ?Sized, const N: usize>(
         &self,
         triangles: impl Iterator<Item = [NdcVertex<N>; 3]>,
@@ -81,7 +81,7 @@ impl Rasterizer for Scanline {
         target: &mut Target,
         probe: &P,
     ) {
-        target.assert_same_size();
+        target.assert_depths();
         for triangle in triangles {
             draw_triangle(&triangle, state, shader, target, probe);
         }

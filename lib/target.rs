@@ -22,8 +22,10 @@ use crate::observer::SharedObserver;
 use crate::payload::Walk;
 use crate::real::Scalar;
 
-/// What is drawn into: a plane of colors and a plane of depths, of the precision in which the rasterizer computes. Both have
-/// the same size: rasterizers refuse others.
+/// What is drawn into: a plane of colors and a plane of depths, of the precision in which the rasterizer computes.
+///
+/// Each pixel must have a depth: rasterizers refuse a plane of depths that is smaller than that of colors. A larger one can
+/// serve pictures of several sizes, if it is cleared for each.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Target<D = f64> {
     /// The picture.
@@ -50,13 +52,16 @@ impl<D: Scalar> Target<D> {
         target
     }
 
-    /// Both planes must have a place for each pixel.
+    /// Each pixel must have a depth.
     ///
     /// # Panics
-    /// If they are not of the same size.
-    pub(crate) fn assert_same_size(&self) {
+    /// If the plane of depths is smaller than that of colors.
+    pub(crate) fn assert_depths(&self) {
         let [color, depth] = [self.color.rect(), self.depth.rect()].map(|rect| (rect.right, rect.top));
-        assert!(color == depth, "a target of {color:?} colors and {depth:?} depths");
+        assert!(
+            color.0 <= depth.0 && color.1 <= depth.1,
+            "a target of {color:?} colors and {depth:?} depths"
+        );
     }
 
     /// From now on this one observes both planes, and no other.

@@ -606,7 +606,7 @@ fn layers_with_holes_on_what_was_there() {
 
 #[test]
 #[should_panic(expected = "(8, 8) colors and (8, 4) depths")]
-fn planes_of_two_sizes_are_refused() {
+fn pixels_without_depth_are_refused() {
     let mut target = Target::<f32>::sized(8, 8);
     target.depth = DepthBuffer::new(8, 4);
     let mesh = bare([[-1.0, -1.0, 0.0, 1.0], [1.0, -1.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0]]);
@@ -615,7 +615,7 @@ fn planes_of_two_sizes_are_refused() {
 
 #[test]
 #[should_panic(expected = "(8, 8) colors and (8, 4) depths")]
-fn planes_of_two_sizes_are_refused_by_the_exact_one_too() {
+fn pixels_without_depth_are_refused_by_the_exact_one_too() {
     let mut target = Target::<f32>::sized(8, 8);
     target.depth = DepthBuffer::new(8, 4);
     let mesh = bare([[-1.0, -1.0, 0.0, 1.0], [1.0, -1.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0]]);

@@ -78,7 +78,7 @@ impl<R: Scalar> Rasterizer for Exact<R> {
         target: &mut Target<R>,
         probe: &P,
     ) {
-        target.assert_same_size();
+        target.assert_depths();
         for triangle in triangles {
             if triangle.iter().all(is_in_guard_band) {
                 draw_triangle::<R, S, P, N>(&triangle, state, shader, target, probe);

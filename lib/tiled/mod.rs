@@ -102,7 +102,7 @@ impl Tiled {
     /// many ways to write it, and a stored depth may be another one of them).
     ///
     /// # Panics
-    /// If the planes of the target are not of the same size.
+    /// If a pixel of the target has no depth: its plane of depths is smaller than that of colors.
     pub fn draw_mesh<S: Shader<N>, const N: usize>(
         &self,
         mesh: &Mesh<S::Attributes>,
@@ -121,7 +121,7 @@ impl Tiled {
         state: &RenderState,
         target: &mut Target<f32>,
     ) {
-        target.assert_same_size();
+        target.assert_depths();
         let picture = target.color.rect();
         // Two pictures at a time do not share working memory.
         let mut own = Front::default();

@@ -73,7 +73,7 @@ pub(super) fn depth_range(coverage: &Coverage, triangle: Triangle<'_>, rect: Rec
     });
     let most = first.abs() + to_second.abs() + to_third.abs();
     // From pixel to pixel depths of a thin triangle change by up to 2³³ times as much: beyond single precision, perhaps.
-    if most.is_nan() || most >= FARTHEST {
+    if most.is_nan() || most > FARTHEST {
         return [f64::NEG_INFINITY, f64::INFINITY];
     }
     // A pixel's depth takes some twenty roundings of 2⁻²⁴ each, on the way to the first of its row and from there.
