@@ -43,7 +43,7 @@ fn main(chapter: &Chapter) -> ExitCode {
         Err(error) => {
             // The version goes to standard output, errors to standard error; a closed pipe is not worth a word.
             if error.use_stderr() {
-                note(error.render().ansi().to_string().trim_end());
+                note(error.to_string().trim_end());
             } else {
                 let _ = error.print();
             }
