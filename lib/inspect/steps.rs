@@ -394,12 +394,12 @@ mod tests {
     fn frames_end_with_rows_and_show_what_was_written() {
         let variant = Variant::new("thrice", thrice, "").size(64, 48);
         let steps = Steps::new(&variant, &variant.options(None)).expect("a small picture");
-        // The clear, and three times 48 rows; the first row of each follows a higher one.
-        assert_eq!(steps.frames.len(), 1 + 3 * 48);
-        let first = steps.frame(1);
+        // Three times 48 rows; the first one shows with what was cleared before it.
+        assert_eq!(steps.frames.len(), 3 * 48);
+        let first = steps.frame(0);
         let seen = |x, y| first.get(x, y);
         assert_eq!([seen(0, 0), seen(31, 0)], [Some(Color::gray(80)); 2]);
         assert_eq!([seen(32, 0), seen(0, 1)], [Some(Color::BLUE); 2]);
-        assert!(steps.frame(3 * 48) == steps.frame(999), "the finished picture");
+        assert!(steps.frame(3 * 48 - 1) == steps.frame(999), "the finished picture");
     }
 }
