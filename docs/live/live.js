@@ -337,7 +337,11 @@
                 sweep.setAttribute("aria-label", `let ${name} run through its range`);
                 return row(label(slider), sweep);
             }
-            if (kind === "choice") return row(label(this.list(name, names, () => this.knob(name).value, set)));
+            if (kind === "choice") {
+                // The list shows its value by itself.
+                const list = this.list(name, names, () => this.knob(name).value, set);
+                return row(make("label", {}, make("span", {}, name), list));
+            }
             if (kind === "switch" || kind === "color") {
                 const input = make("input", { type: kind === "switch" ? "checkbox" : "color" });
                 const told = () => (kind === "switch" ? (input.checked ? "on" : "off") : input.value.slice(1));

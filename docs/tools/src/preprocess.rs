@@ -320,10 +320,10 @@ const LONG_CODE: usize = 36;
 
 /// Long code within text: it breaks between words, and a long word after `_` and `/`.
 fn long_code(code: &str) -> String {
-    // Signs that Markdown reads, even within tags.
+    // Signs that Markdown reads, even within tags: two hyphens would become a dash.
     let literal = |text: &str| {
         let mut result = escape(text);
-        for sign in ["*", "_", "[", "]", "|", "\\", "~"] {
+        for sign in ["*", "_", "[", "]", "|", "\\", "~", "-", ".", "'"] {
             result = result.replace(sign, &format!("&#{};", u32::from(sign.as_bytes()[0])));
         }
         result
@@ -395,7 +395,7 @@ mod tests {
     fn long_code_breaks_between_words_and_in_long_names_alone() {
         assert_eq!(
             long_code("run --set a|b"),
-            "<code class=\"long\"><span>run</span> <span>--set</span> <span>a&#124;b</span></code>"
+            "<code class=\"long\"><span>run</span> <span>&#45;&#45;set</span> <span>a&#124;b</span></code>"
         );
         let name = "the_row_of_a_fractional_middle_vertex_is_drawn_twice";
         let code = long_code(name);
