@@ -33,8 +33,9 @@
      * }} Description
      */
 
-    /** Longer than this a picture may not take while something moves: then it is drawn smaller. */
-    const PATIENCE = 24;
+    /** Longer than this, in milliseconds, a picture may not take while something moves: then it is drawn smaller, so that
+     *  sixty can be shown in a second. */
+    const PATIENCE = 12;
     /** So long after the last movement the picture is drawn in full. */
     const REST = 160;
     /** How many pixels the loupe shows in each direction from the middle, and how large. */
