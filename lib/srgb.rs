@@ -1,8 +1,8 @@
 //! Chapter 11, beyond the book: what the numbers of a picture mean as amounts of light.
 //!
-//! A channel of 128 is not half as bright as one of 255, but a fifth: pictures are encoded by the *sRGB* transfer function,
-//! which spends more of its 256 steps on the dark, where eyes see smaller differences. Light adds up as *linear light*; so a shader that
-//! adds and multiplies light decodes colors first, and encodes what comes out.
+//! A channel of 128 is not half as bright as one of 255, but a fifth: pictures are encoded by the *sRGB* transfer
+//! function, which spends more of its 256 steps on the dark, where eyes see smaller differences. Light adds up as
+//! *linear light*; so a shader that adds and multiplies light decodes colors first, and encodes what comes out.
 //!
 //! ```text
 //!   encoded                     light

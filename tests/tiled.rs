@@ -158,6 +158,22 @@ fn small() -> impl Strategy<Value = [Record; 3]> {
     })
 }
 
+/// The same for whole triangles, with derivatives or without.
+fn compare_records(
+    records: Vec<Record>,
+    state: &RenderState,
+    shader: Busy,
+    is_sloped: bool,
+    size: (u32, u32),
+) {
+    let mesh = Mesh::unindexed(records).expect("whole triangles");
+    if is_sloped {
+        compare(&mesh, &Sloped(shader), state, size);
+    } else {
+        compare(&mesh, &shader, state, size);
+    }
+}
+
 fn records() -> impl Strategy<Value = Vec<Record>> {
     let triangle = prop_oneof![prop::array::uniform3(record()), small(), small()];
     prop::collection::vec(triangle, 0..40).prop_map(|triangles| triangles.concat())
@@ -289,13 +305,7 @@ proptest! {
         records in odd_records(), state in state(), mode in mode(), is_filtered in any::<bool>(), is_sloped in any::<bool>(),
         size in prop_oneof![4 => (1_u32..24, 1_u32..40), 1 => (120_u32..140, 28_u32..36)],
     ) {
-        let mesh = Mesh::unindexed(records).expect("whole triangles");
-        let shader = busy(mode, is_filtered);
-        if is_sloped {
-            compare(&mesh, &Sloped(shader), &state, size);
-        } else {
-            compare(&mesh, &shader, &state, size);
-        }
+        compare_records(records, &state, busy(mode, is_filtered), is_sloped, size);
     }
 }
 
@@ -306,13 +316,7 @@ proptest! {
     fn tiled_equals_exact(records in records(), state in state(), mode in mode(), is_filtered in any::<bool>(), is_sloped in any::<bool>(),
         size in size(),
     ) {
-        let mesh = Mesh::unindexed(records).expect("whole triangles");
-        let shader = busy(mode, is_filtered);
-        if is_sloped {
-            compare(&mesh, &Sloped(shader), &state, size);
-        } else {
-            compare(&mesh, &shader, &state, size);
-        }
+        compare_records(records, &state, busy(mode, is_filtered), is_sloped, size);
     }
 
     #[test]

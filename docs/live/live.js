@@ -19,7 +19,7 @@
      *   memory: WebAssembly.Memory,
      *   text(length: number): number, length(): number,
      *   open(): number, event(figure: number): number,
-     *   draw(figure: number): number, size(figure: number): number,
+     *   draw(figure: number): number,
      *   describe(figure: number): number, history(figure: number, x: number, y: number): number,
      * }} Exports
      * @typedef {{
@@ -185,7 +185,6 @@
             }
             const begin = performance.now();
             const place = this.module.exports.draw(this.id);
-            // The difference of two pictures, or a variant of its own mind, may have another size.
             if (this.canvas.width !== width || this.canvas.height !== height) {
                 [this.canvas.width, this.canvas.height] = [width, height];
             }

@@ -24,7 +24,7 @@
 //! Triangles that share an edge, with the same two vertices, leave no hole along it and draw nothing twice. Where a
 //! vertex of one lies in the middle of an edge of another (a T-junction), rounding may move it off that edge.
 //!
-//! Vertices outside twice the width and height of the view, beside the eye (ω = 0) and behind it, are clipped away before
+//! Vertices outside twice the width and height of the view, beside the eye (w = 0) and behind it, are clipped away before
 //! they are rounded (a *guard band*); a triangle that is still farther than 2¹⁶ pixels from the origin is not drawn.
 //!
 //! Sources: Direct3D 11.3 functional specification, 3.2.3.6 (colors), 3.3 (pixel centers), 3.4.1 (snapping), 3.4.2.1

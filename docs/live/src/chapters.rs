@@ -14,7 +14,7 @@ macro_rules! chapters {
         $(#[path = $path] mod $name;)*
 
         /// All chapters, in the order of the book.
-        pub static CHAPTERS: &[Chapter] = &[$($name::CHAPTER),*];
+        pub(crate) static CHAPTERS: &[Chapter] = &[$($name::CHAPTER),*];
     };
 }
 

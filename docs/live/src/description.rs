@@ -4,8 +4,6 @@ use rasterbook::figure::{Kind, Knob, RasterizerChoice, Value};
 use rasterbook::live::{Live, View};
 use serde_json::{Value as Json, json};
 
-use crate::CHAPTERS;
-
 /// All that the page shows around the picture.
 pub(crate) fn of(live: &Live<'_>) -> Json {
     let scene = live.scene();
@@ -68,19 +66,4 @@ fn of_knob(knob: &Knob, value: Value) -> Json {
         all.extend(more);
     }
     json
-}
-
-/// Every variant of every chapter: what it is called, its frames, its rasterizers.
-pub(crate) fn contents() -> Json {
-    let variants = CHAPTERS.iter().flat_map(|chapter| {
-        chapter.variants.iter().map(|variant| {
-            json!({
-                "chapter": chapter.name,
-                "variant": variant.name,
-                "frames": variant.animation.map_or(1, |animation| animation.frames),
-                "rasterizer": variant.rasterizer.map(RasterizerChoice::name),
-            })
-        })
-    });
-    Json::Array(variants.collect())
 }

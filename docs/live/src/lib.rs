@@ -24,7 +24,7 @@ mod chapters;
 mod description;
 mod events;
 
-pub use chapters::CHAPTERS;
+use chapters::CHAPTERS;
 
 /// All figures of the page, and the last answer.
 #[derive(Default)]
@@ -108,7 +108,7 @@ pub extern "C" fn event(figure: usize) -> i32 {
     })
 }
 
-/// Draws what is looked at. Width and height can be asked for afterwards.
+/// Draws what is looked at, in the size that was asked for; at first in the variant's own.
 #[unsafe(no_mangle)]
 pub extern "C" fn draw(figure: usize) -> *const u8 {
     with(figure, std::ptr::null(), |live, page| {
@@ -123,12 +123,6 @@ fn rgba(picture: &Framebuffer) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(4 * picture.width() as usize * picture.height() as usize);
     channels.for_each(|[red, green, blue]| bytes.extend([red, green, blue, 255]));
     bytes
-}
-
-/// Width in the upper half, height in the lower, of what is drawn.
-#[unsafe(no_mangle)]
-pub extern "C" fn size(figure: usize) -> u32 {
-    with(figure, 0, |live, _| (live.scene().size.0 << 16) | live.scene().size.1)
 }
 
 /// A number that two figures have in common only if they show the same pixels.
@@ -152,12 +146,6 @@ pub extern "C" fn history(figure: usize, x: i32, y: i32) -> *const u8 {
     with(figure, std::ptr::null(), |live, page| answer(page, live.history((x, y)).to_string()))
 }
 
-/// The chapters and their variants, to be gone through: JSON.
-#[unsafe(no_mangle)]
-pub extern "C" fn contents() -> *const u8 {
-    PAGE.with_borrow_mut(|page| answer(page, description::contents().to_string()))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -179,7 +167,6 @@ mod tests {
     #[test]
     fn a_figure_is_opened_turned_and_drawn() {
         let [affine, pawn] = ["ch05_perspective_correct affine", "ch01_pixels pawn"].map(opened);
-        assert_eq!(size(affine), (640 << 16) | 480);
         ask("set tilt=60");
         assert_eq!(event(affine), 1);
         assert!(!draw(affine).is_null());
@@ -217,13 +204,5 @@ mod tests {
         }
         assert_eq!(event(99), -1);
         assert!(draw(99).is_null() && describe(99).is_null());
-    }
-
-    #[test]
-    fn all_variants_are_in_the_contents() {
-        contents();
-        let contents: serde_json::Value = serde_json::from_str(&answered()).expect("JSON");
-        let count: usize = CHAPTERS.iter().map(|chapter| chapter.variants.len()).sum();
-        assert_eq!(contents.as_array().map(Vec::len), Some(count));
     }
 }
