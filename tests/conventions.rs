@@ -317,3 +317,45 @@ fn a_step_of_a_z_buffer_grows_with_the_square_of_the_distance() {
         assert!((grown / expected - 1.0).abs() < 1e-3, "{grown} is not {expected} at {w}");
     }
 }
+
+#[test]
+fn how_far_apart_two_surfaces_must_be() {
+    use rasterbook::depth::{DepthFormat, reversed_z_from_w, z_from_w};
+
+    // The table of chapter 6: the distance w; integers, `f32` and reversed `f32`; how much finer the last one is.
+    let table = [
+        (1.0, [5.96e-7, 5.96e-7, 7.45e-8], 8.0),
+        (10.0, [5.96e-5, 5.96e-5, 9.31e-7], 64.0),
+        (100.0, [0.00596, 0.00596, 5.82e-6], 1024.0),
+        (500.0, [0.149, 0.149, 1.82e-5], 8192.0),
+    ];
+    let (near, far) = (0.1, 1000.0);
+    for (w, expected, finer) in table {
+        let ordinary = z_from_w(w, near, far);
+        let reversed = reversed_z_from_w(w, near, far);
+        let steps = [
+            DepthFormat::Unorm24.step(ordinary),
+            DepthFormat::Float32.step(ordinary),
+            DepthFormat::Float32.step(reversed),
+        ];
+        let distances = steps.map(|step| step * w * w * (far - near) / (near * far));
+        for (distance, expected) in distances.into_iter().zip(expected) {
+            assert!((distance / expected - 1.0).abs() < 2e-3, "{distance} is not {expected} at {w}");
+        }
+        assert_eq!(steps[1] / steps[2], finer);
+
+        // A little more than a step apart they are told apart, wherever they lie between two steps.
+        for index in 0..100 {
+            let from = w * (1.0 + f64::from(index) * 1e-5);
+            let encodings: [(fn(f64, f64, f64) -> f64, DepthFormat, f64); 3] = [
+                (z_from_w, DepthFormat::Unorm24, distances[0]),
+                (z_from_w, DepthFormat::Float32, distances[1]),
+                (reversed_z_from_w, DepthFormat::Float32, distances[2]),
+            ];
+            for (encode, format, distance) in encodings {
+                let [a, b] = [from, from + 1.01 * distance].map(|w| format.stored(encode(w, near, far)));
+                assert!(a != b, "{format:?} at {from}");
+            }
+        }
+    }
+}

@@ -48,7 +48,7 @@ pub(super) const PIERCING: &[Knob] = &[
 /// The depth that the buffer is cleared to: farther away than anything drawn.
 pub(super) const FAR_AWAY: f64 = 1000.0;
 
-type Triangle<const N: usize> = [ScreenVertex<Projected<f64, N>>; 3];
+pub(super) type Triangle<const N: usize> = [ScreenVertex<Projected<f64, N>>; 3];
 
 // ANCHOR: vertex
 /// Projects a point of the book's scene with its texture coordinates; its depth z is the third value.

@@ -96,6 +96,8 @@ pub const PROGRAMS: [Program; 11] = [
             "depth",
             "w-buffer",
             "steps",
+            "z-fighting",
+            "reversed",
             "uncleared",
             "cleared",
         ],
