@@ -72,7 +72,13 @@ const LINE: &[Knob] = &[
         "",
         "the line moves to the right: the points of the cut come and go in pairs of red and green",
     ),
-    Knob::number("slope", 0.05, [-0.2, 0.2], "", "the line tilts: each point of the cut stays on an edge"),
+    Knob::number(
+        "slope",
+        0.05,
+        [-0.2, 0.2],
+        "",
+        "the line tilts: each point of the cut stays on an edge",
+    ),
 ];
 
 /// The depth that the buffer is cleared to: larger than −1/z of anything drawn.
@@ -123,7 +129,11 @@ fn walls(framebuffer: &mut Framebuffer, distance: f64, volume: ClipVolume) {
         [corner(0.0, 0.0, 10.0), corner(0.0, 480.0, 10.0), corner(1280.0, 0.0, 100.0)],
         [corner(1280.0, 0.0, 100.0), corner(0.0, 480.0, 10.0), corner(1280.0, 480.0, 100.0)],
         [corner(0.0, 0.0, distance), corner(0.0, 480.0, distance), corner(1280.0, 0.0, distance)],
-        [corner(1280.0, 480.0, distance), corner(0.0, 480.0, distance), corner(1280.0, 0.0, distance)],
+        [
+            corner(1280.0, 480.0, distance),
+            corner(0.0, 480.0, distance),
+            corner(1280.0, 0.0, distance),
+        ],
     ] {
         let texel = |uv| Color::truncated(texture.nearest(uv, AddressMode::Clamp));
         draw(&mut target, triangle, volume, |divided| divided.position.truncate(), texel);
@@ -184,7 +194,8 @@ fn polygon(framebuffer: &mut Framebuffer, knobs: &Knobs) {
         (220.0, 420.0),
         (70.0, 380.0),
     ];
-    let outline = corners.map(|(x, y)| ClipVertex { position: dvec4(x, y, 0.0, 1.0), varyings: [] });
+    let outline =
+        corners.map(|(x, y)| ClipVertex { position: dvec4(x, y, 0.0, 1.0), varyings: [] });
     // Kept is what lies left of the line x = place + slope · y: with w = 1 a plane of clip space is
     // a line.
     let plane = Plane::homogeneous(dvec4(-1.0, slope, 0.0, place));
@@ -193,7 +204,9 @@ fn polygon(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     let fit = Fit::new(framebuffer.rect(), [640.0, 480.0]);
     let at = |point: DVec4| fit.at(dvec2(point.x, point.y));
     let line = |framebuffer: &mut Framebuffer, a: DVec4, b: DVec4, color| {
-        dda(at(a), at(b), StepAxis::Longer, framebuffer.scissor(), |x, y| framebuffer.set(x, y, color));
+        dda(at(a), at(b), StepAxis::Longer, framebuffer.scissor(), |x, y| {
+            framebuffer.set(x, y, color)
+        });
     };
     let right = dvec4(330.0, 0.0, 0.0, 0.0);
     for shift in [DVec4::ZERO, right] {

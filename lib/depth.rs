@@ -111,8 +111,8 @@ pub fn w_from_z(z: f64, near: f64, far: f64) -> f64 {
 }
 
 // ANCHOR: reversed
-/// The same depth the other way round: 1 at the near plane and 0 at the far plane, from the distance
-/// w. Nearer is larger, so the test is [`DepthTest::Greater`].
+/// The same depth the other way round: 1 at the near plane and 0 at the far plane, from the
+/// distance w. Nearer is larger, so the test is [`DepthTest::Greater`].
 ///
 /// n (f − w) / ((f − n) w), which is 1 − [`z_from_w`], computed without subtracting from 1: that
 /// would round off what is small far away. Source: Reed, *Depth precision visualized*, 2015.

@@ -175,7 +175,7 @@ fn weights_corrected_by_w_give_the_same_square() {
 fn values_leave_the_range_of_the_corners() {
     let orange =
         |name| count(&draw("ch03_barycentric", name), |_, _, color| color == Color::rgb(255, 140, 0));
-    let [spikes, edges, everywhere] = ["spikes", "limited-edges", "limited"].map(orange);
+    let [spikes, edges, everywhere] = ["spikes", "clamped-edges", "clamped"].map(orange);
     assert_eq!(everywhere, 0);
     assert!(edges > 0, "the book's remedy leaves the ends of rows");
     assert!(spikes > 2 * edges, "and mends the tips");

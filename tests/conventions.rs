@@ -11,7 +11,7 @@ use rasterbook::interpolate::{Interpolation, Projected, ScreenVertex, step_value
 use rasterbook::line::{StepAxis, dda};
 use rasterbook::merge::Merge;
 use rasterbook::observer::Observer;
-use rasterbook::payload::{Payload, StepLimit, Walk};
+use rasterbook::payload::{Payload, StepClamp, Walk};
 use rasterbook::probe::{Fragment, Piece, Probe};
 use rasterbook::scanline::{self, EdgeWalk};
 use rasterbook::texture::AddressMode;
@@ -109,7 +109,7 @@ fn arithmetic_is_not_fused() {
 fn the_default_of_every_option() {
     assert_eq!(StepAxis::default(), StepAxis::Longer);
     assert_eq!(EdgeWalk::default(), EdgeWalk::Clamped);
-    assert_eq!(StepLimit::default(), StepLimit::Edges, "the book's remedy");
+    assert_eq!(StepClamp::default(), StepClamp::Edges, "the book's remedy");
     assert_eq!(Interpolation::default(), Interpolation::PerspectiveCorrect);
     assert_eq!(AddressMode::default(), AddressMode::Clamp);
     let state = RenderState::default();

@@ -50,9 +50,19 @@ fn checkered_floor(framebuffer: &mut Framebuffer, knobs: &Knobs, interpolation: 
         let far = [corner(column, row + 1), corner(column + 1, row + 1)];
         for triangle in [[near[0], near[1], far[0]], [near[1], far[1], far[0]]] {
             let triangle = fit.triangle(triangle);
-            step_parameter(triangle, interpolation, Walk::default(), framebuffer.scissor(), |x, y, point| {
-                framebuffer.set(x, y, Color::truncated(texture.nearest(point.values, AddressMode::Repeat)));
-            });
+            step_parameter(
+                triangle,
+                interpolation,
+                Walk::default(),
+                framebuffer.scissor(),
+                |x, y, point| {
+                    framebuffer.set(
+                        x,
+                        y,
+                        Color::truncated(texture.nearest(point.values, AddressMode::Repeat)),
+                    );
+                },
+            );
         }
     }
 }

@@ -41,7 +41,12 @@ const DISTANCES: [u32; 8] = [2, 5, 10, 20, 50, 100, 200, 500];
 // ANCHOR: fighting
 /// Draws tilted green boards, then in front of each a red plate: `gap` nearer to the eye, at every
 /// point as it is seen. `depth_of` makes a depth of a distance, and the buffer rounds it.
-fn boards(framebuffer: &mut Framebuffer, knobs: &Knobs, depth_of: fn(f64, f64, f64) -> f64, test: DepthTest) {
+fn boards(
+    framebuffer: &mut Framebuffer,
+    knobs: &Knobs,
+    depth_of: fn(f64, f64, f64) -> f64,
+    test: DepthTest,
+) {
     let [near, gap] = ["near", "gap"].map(|name| knobs.number(name));
     let format = match knobs.choice("format") {
         "unorm24" => DepthFormat::Unorm24,

@@ -93,7 +93,8 @@ fn draw_all(
     let texture = Texture::book();
     let viewport = Viewport::fitting(target.color.rect(), ASPECT);
     for corners in triangles {
-        let vertices = corners.map(|(view, uv)| ClipVertex { position: project(view.into()), varyings: uv });
+        let vertices =
+            corners.map(|(view, uv)| ClipVertex { position: project(view.into()), varyings: uv });
         draw(&mut target, viewport, vertices, (&ClipVolume::Canonical.planes(range), test), |uv| {
             Color::truncated(texture.nearest(uv, AddressMode::Clamp))
         });

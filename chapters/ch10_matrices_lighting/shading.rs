@@ -87,8 +87,10 @@ struct Corner {
 /// A ball of so many rings and segments.
 fn ball(rings: u32, segments: u32) -> Mesh<Corner> {
     let point = |ring: u32, segment: u32| {
-        let (up, round) =
-            (PI * f64::from(ring) / f64::from(rings), TAU * f64::from(segment) / f64::from(segments));
+        let (up, round) = (
+            PI * f64::from(ring) / f64::from(rings),
+            TAU * f64::from(segment) / f64::from(segments),
+        );
         dvec3(libm::sin(up) * libm::sin(round), -libm::cos(up), -libm::sin(up) * libm::cos(round))
     };
     let mut vertices = Vec::new();
@@ -174,9 +176,15 @@ impl Shader<6> for Ball {
 }
 // ANCHOR_END: frequency
 
-const CAMERA: Frustum = Frustum { left: -1.6, right: 1.6, bottom: -1.2, top: 1.2, near: 2.0, far: 20.0 };
-const SHINY: Material =
-    Material { ambient: 0.15, diffuse: 0.65, specular: 0.7, exponent: 24.0, highlight: Highlight::Phong };
+const CAMERA: Frustum =
+    Frustum { left: -1.6, right: 1.6, bottom: -1.2, top: 1.2, near: 2.0, far: 20.0 };
+const SHINY: Material = Material {
+    ambient: 0.15,
+    diffuse: 0.65,
+    specular: 0.7,
+    exponent: 24.0,
+    highlight: Highlight::Phong,
+};
 const CORAL: [f64; 3] = [215.0, 90.0, 70.0];
 const TEAL: [f64; 3] = [60.0, 140.0, 150.0];
 
@@ -215,10 +223,16 @@ fn two_balls(canvas: &mut Canvas, frequency: Frequency, is_faceted: bool) {
     canvas.clear(&state());
     let shiny = Material { exponent: canvas.knobs.number("exponent"), ..SHINY };
     let (coarse, light) = (canvas.knobs.whole("rings").unsigned_abs(), light(&canvas.knobs));
-    for (x, color, rings, segments) in [(-1.55, CORAL, coarse, coarse * 10 / 7), (1.55, TEAL, 24, 36)] {
+    for (x, color, rings, segments) in
+        [(-1.55, CORAL, coarse, coarse * 10 / 7), (1.55, TEAL, 24, 36)]
+    {
         let mesh = ball(rings, segments);
         let mesh = if is_faceted { faceted(&mesh) } else { mesh };
-        canvas.draw(&mesh, &ball_at(dvec3(x, 0.0, 5.0), 1.4, color, frequency, shiny, light), &state());
+        canvas.draw(
+            &mesh,
+            &ball_at(dvec3(x, 0.0, 5.0), 1.4, color, frequency, shiny, light),
+            &state(),
+        );
     }
 }
 
@@ -255,7 +269,8 @@ fn highlights(canvas: &mut Canvas, highlight: Highlight) {
     }
     // The flattened ball below is so large that we see a slope of it, and the light comes low from
     // behind us.
-    let broad = Material { ambient: 0.05, diffuse: 0.25, specular: 0.8, exponent: broad, highlight };
+    let broad =
+        Material { ambient: 0.05, diffuse: 0.25, specular: 0.8, exponent: broad, highlight };
     let low = Light::Directional(normalize([-0.9, 0.25, -0.6]));
     let view_from_model = translate(dvec3(0.0, -2.2, 6.0)) * scale(dvec3(3.2, 1.2, 2.0));
     let grazing = Ball {
@@ -279,7 +294,11 @@ pub(super) fn distance(canvas: &mut Canvas) {
             let place = dvec3(-2.8 + 1.4 * f64::from(i), y, 6.0);
             let lamp = Light::Point { position: [lamp_x, y, lamp_z], intensity: 3.0 };
             let light = if y > 0.0 { Light::Directional([0.0, 0.0, -1.0]) } else { lamp };
-            canvas.draw(&mesh, &ball_at(place, 0.62, color, Frequency::Fragment, dull, light), &state());
+            canvas.draw(
+                &mesh,
+                &ball_at(place, 0.62, color, Frequency::Fragment, dull, light),
+                &state(),
+            );
         }
     }
 }

@@ -87,9 +87,11 @@ impl Shader<3> for Rectangle {
                 Shaded::opaque(self.space.leave(light(white).map(|channel| channel * bright)))
                     .discard(square.is_less(zero))
             }
-            Sample::Mixture => {
-                Shaded::opaque(self.space.leave(mix(light(red), light(green), (x + one) * R::of(0.5))))
-            }
+            Sample::Mixture => Shaded::opaque(self.space.leave(mix(
+                light(red),
+                light(green),
+                (x + one) * R::of(0.5),
+            ))),
             Sample::Mean => {
                 Shaded::opaque(self.space.leave(mix(light(black), light(white), R::of(self.white))))
             }
