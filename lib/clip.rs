@@ -87,12 +87,6 @@ impl Plane {
         Self { normal: dvec4(0.0, 0.0, 0.0, 1.0), offset: -distance }
     }
 
-    /// The normal, and what is added.
-    #[cfg(feature = "tiled")]
-    pub(crate) const fn coefficients(&self) -> ([f64; 4], f64) {
-        (self.normal.to_array(), self.offset)
-    }
-
     /// How far inside a point is; negative outside.
     #[must_use]
     #[inline]
@@ -101,6 +95,14 @@ impl Plane {
     }
 }
 // ANCHOR_END: planes
+
+#[cfg(feature = "tiled")]
+impl Plane {
+    /// The normal, and what is added.
+    pub(crate) const fn coefficients(&self) -> ([f64; 4], f64) {
+        (self.normal.to_array(), self.offset)
+    }
+}
 
 /// On which coordinates the distance to a plane is measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

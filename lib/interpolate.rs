@@ -314,7 +314,9 @@ fn step_parameter_in<const N: usize>(
         });
     }
 }
+// ANCHOR_END: step_parameter
 
+// ANCHOR: ends_of_row
 /// The depths at the ends of the halves' edges.
 #[inline]
 pub(crate) fn attach_depths(split: &Split, depths: [f64; 3]) -> [Half<f64>; 2] {
@@ -333,7 +335,7 @@ pub(crate) fn ends_of_row<const N: usize>(
         interpolation.between(right.start, right.end, t_right),
     ]
 }
-// ANCHOR_END: step_parameter
+// ANCHOR_END: ends_of_row
 
 /// What is stepped along edges and rows: t′, and a depth, which changes linearly on the screen.
 ///

@@ -141,7 +141,9 @@ impl Half {
         });
     }
 }
+// ANCHOR_END: step
 
+// ANCHOR: stepped
 /// A payload on its way up one edge of a half.
 struct Stepped<P> {
     /// The row that it has reached.
@@ -171,8 +173,7 @@ impl<P: Payload> Stepped<P> {
         }
     }
 }
-
-// ANCHOR_END: step
+// ANCHOR_END: stepped
 
 impl Span {
     // ANCHOR: span_step

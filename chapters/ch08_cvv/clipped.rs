@@ -76,7 +76,9 @@ pub(super) fn draw<const N: usize>(
         target.fill(on_screen, &color_of);
     }
 }
+// ANCHOR_END: draw
 
+// ANCHOR: draw_all
 /// A vertex in camera space, and its texture coordinates.
 type SpaceCorner = ([f64; 3], [f64; 2]);
 
@@ -101,7 +103,7 @@ fn draw_all(
     }
     *framebuffer = target.color;
 }
-// ANCHOR_END: draw
+// ANCHOR_END: draw_all
 
 /// A triangle that fits into the view.
 pub(super) fn ndc(framebuffer: &mut Framebuffer, knobs: &Knobs) {
