@@ -276,20 +276,13 @@ fn confetti(framebuffer: &mut Framebuffer, clamp: StepClamp) {
                 vertex(dvec2(x + 8.4, y + 1.7), [0.0]),
                 vertex(dvec2(x + 1.8 + 0.7 * i, y + 7.6), [1.0]),
             ];
-            step_values(
-                triangle,
-                Walk { clamp, ..Walk::default() },
-                screen.scissor(),
-                |x, y, [value]| {
-                    let is_in_range = (-1e-9..=1.0 + 1e-9).contains(&value);
-                    let blue = Color::truncated([
-                        30.0 + 60.0 * value,
-                        60.0 + 120.0 * value,
-                        110.0 + 140.0 * value,
-                    ]);
-                    screen.set(x, y, if is_in_range { blue } else { Color::rgb(255, 140, 0) });
-                },
-            );
+            let walk = Walk { clamp, ..Walk::default() };
+            step_values(triangle, walk, screen.scissor(), |x, y, [value]| {
+                let is_in_range = (-1e-9..=1.0 + 1e-9).contains(&value);
+                let blue = [30.0 + 60.0 * value, 60.0 + 120.0 * value, 110.0 + 140.0 * value];
+                let orange = Color::rgb(255, 140, 0);
+                screen.set(x, y, if is_in_range { Color::truncated(blue) } else { orange });
+            });
         }
     });
 }

@@ -61,14 +61,14 @@ fn draw_cube(
     half: f64,
     color: Color,
 ) {
-    let corner = |i: usize, z: f64| center + half * dvec3(FRONT[i % 4].0, FRONT[i % 4].1, z);
+    let vertex = |i: usize, z: f64| center + half * dvec3(FRONT[i % 4].0, FRONT[i % 4].1, z);
     let dim = Color::truncated(color.to_f64().map(|channel| channel * 0.55));
     for i in 0..4 {
-        segment(framebuffer, project, corner(i, 1.0), corner(i + 1, 1.0), dim);
-        segment(framebuffer, project, corner(i, -1.0), corner(i, 1.0), dim);
+        segment(framebuffer, project, vertex(i, 1.0), vertex(i + 1, 1.0), dim);
+        segment(framebuffer, project, vertex(i, -1.0), vertex(i, 1.0), dim);
     }
     for i in 0..4 {
-        segment(framebuffer, project, corner(i, -1.0), corner(i + 1, -1.0), color);
+        segment(framebuffer, project, vertex(i, -1.0), vertex(i + 1, -1.0), color);
     }
 }
 

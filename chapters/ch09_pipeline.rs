@@ -264,9 +264,9 @@ fn five_frames(canvas: &mut Canvas, clear: bool) {
             canvas.clear(&state);
         }
         let (x, fade) = (30.0 + step * f64::from(frame), 50.0 * f64::from(frame));
-        let corners = vec![[x, 90.0], [x + 190.0, 150.0], [x + 60.0, 400.0]];
+        let vertices = vec![[x, 90.0], [x + 190.0, 150.0], [x + 60.0, 400.0]];
         let shader = Flat { color: [40.0 + fade, 90.0 + fade / 3.0, 240.0 - fade], opacity: 1.0 };
-        canvas.draw(&Mesh::unindexed(corners).expect("whole triangles"), &shader, &state);
+        canvas.draw(&Mesh::unindexed(vertices).expect("whole triangles"), &shader, &state);
     }
 }
 
@@ -343,8 +343,8 @@ fn indexed(canvas: &mut Canvas) {
     let squares =
         (0..side - 1).flat_map(|row| (0..side - 1).map(move |column| row * side + column));
     let indices = squares
-        .flat_map(|corner| {
-            [corner, corner + 1, corner + side, corner + 1, corner + side + 1, corner + side]
+        .flat_map(|first| {
+            [first, first + 1, first + side, first + 1, first + side + 1, first + side]
         })
         .collect();
 
@@ -389,11 +389,11 @@ fn blended(canvas: &mut Canvas) {
     let (opacity, order) = (canvas.knobs.number("opacity"), canvas.knobs.choice("order"));
     let [left, right] = ["left", "right"].map(|side| blend_mode(canvas.knobs.choice(side)));
     canvas.clear(&RenderState { clear_color: Color::gray(40), ..RenderState::default() });
-    let mut add = |corners: [[f64; 2]; 3], color, opacity, blend| {
+    let mut add = |vertices: [[f64; 2]; 3], color, opacity, blend| {
         let merge = Merge { blend, ..Merge::default() };
         let state = RenderState { merge, ..RenderState::default() };
         canvas.draw(
-            &Mesh::unindexed(corners.to_vec()).expect("whole triangles"),
+            &Mesh::unindexed(vertices.to_vec()).expect("whole triangles"),
             &Flat { color, opacity },
             &state,
         );
@@ -405,17 +405,17 @@ fn blended(canvas: &mut Canvas) {
         .filter(|(c, r)| (c + r) % 2 == 0)
     {
         let (x, y) = (f64::from(column) * 40.0, f64::from(row) * 40.0);
-        for corners in [
+        for vertices in [
             [[x, y], [x + 39.0, y], [x, y + 39.0]],
             [[x + 39.0, y], [x + 39.0, y + 39.0], [x, y + 39.0]],
         ] {
-            add(corners, [75.0; 3], 1.0, Blend::Opaque);
+            add(vertices, [75.0; 3], 1.0, Blend::Opaque);
         }
     }
     for (shift, blend) in [(0.0, left), (310.0, right)] {
         let at = |x: f64, y: f64| [x + shift, y];
         for name in order.split('-') {
-            let (corners, color) = match name {
+            let (vertices, color) = match name {
                 "red" => {
                     ([at(40.0, 180.0), at(220.0, 180.0), at(130.0, 440.0)], [230.0, 60.0, 50.0])
                 }
@@ -424,7 +424,7 @@ fn blended(canvas: &mut Canvas) {
                 }
                 _ => ([at(70.0, 300.0), at(260.0, 220.0), at(280.0, 400.0)], [70.0, 110.0, 240.0]),
             };
-            add(corners, color, opacity, blend);
+            add(vertices, color, opacity, blend);
         }
     }
 }

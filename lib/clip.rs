@@ -432,7 +432,7 @@ mod tests {
     }
 
     #[test]
-    fn a_corner_is_cut_off() {
+    fn a_vertex_is_cut_off() {
         let vertex = |x, y, u| ClipVertex { position: dvec4(x, y, 0.0, 1.0), varyings: [u] };
         let clipped = clip_triangle(
             [vertex(0.0, 0.0, 0.0), vertex(2.0, 0.0, 8.0), vertex(0.0, 0.5, 0.0)],

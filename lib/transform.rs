@@ -371,7 +371,7 @@ mod tests {
     use glam::dvec3;
 
     #[test]
-    fn a_point_on_the_near_plane_stays() {
+    fn a_point_on_the_image_plane_stays() {
         let point = dvec3(3.0, -2.0, 5.0);
         assert_eq!(perspective_divide(perspective(point, 5.0)), point);
     }
@@ -527,7 +527,7 @@ mod tests {
     }
 
     #[test]
-    fn normals_stay_upright() {
+    fn normals_stay_perpendicular() {
         // A slope under a scale of 1 : 4: the model matrix would tilt the normal the wrong way.
         let world_from_model =
             translate(dvec3(5.0, 6.0, 7.0)) * scale(dvec3(1.0, 4.0, 2.0)) * rotate_x_to_y(0.4);

@@ -172,7 +172,7 @@ fn weights_corrected_by_w_give_the_same_square() {
 }
 
 #[test]
-fn values_leave_the_range_of_the_corners() {
+fn values_leave_the_range_of_the_vertices() {
     let orange =
         |name| count(&draw("ch03_barycentric", name), |_, _, color| color == Color::rgb(255, 140, 0));
     let [spikes, edges, everywhere] = ["spikes", "clamped-edges", "clamped"].map(orange);

@@ -67,7 +67,7 @@ fn rows_run_from_trunc_y1_while_y_is_below_y2() {
 }
 
 #[test]
-fn the_row_of_a_fractional_middle_corner_is_drawn_twice() {
+fn the_row_of_a_fractional_middle_vertex_is_drawn_twice() {
     let rows = |middle: f64| -> Vec<i32> {
         spans([(4.0, 0.0), (0.0, middle), (4.0, 5.0)]).into_iter().map(|span| span.0).collect()
     };
@@ -147,7 +147,7 @@ fn clip_planes_come_in_the_order_of_the_book() {
 }
 
 #[test]
-fn a_fan_begins_at_the_first_corner() {
+fn a_fan_begins_at_the_first_vertex() {
     let polygon: arrayvec::ArrayVec<char, 4> = ['a', 'b', 'c', 'd'].into();
     assert_eq!(fan(polygon).collect::<Vec<_>>(), [['a', 'b', 'c'], ['a', 'c', 'd']]);
 }
@@ -295,7 +295,7 @@ fn the_six_planes_are_the_walls_of_the_frustum() {
 }
 
 #[test]
-fn the_way_on_the_screen_from_the_way_in_space() {
+fn the_parameter_on_the_screen_from_that_in_space() {
     // t′ = t ωb / ((1 − t) ωa + t ωb), against points that are projected one by one.
     let (a, b) = (dvec3(-3.0, 1.0, 2.0), dvec3(5.0, -4.0, 11.0));
     let on_screen = |point: DVec3| point.x / point.z;
@@ -347,15 +347,13 @@ fn how_far_apart_two_surfaces_must_be() {
         // A little more than a step apart they are told apart, wherever they lie between two steps.
         for index in 0..100 {
             let from = w * (1.0 + f64::from(index) * 1e-5);
-            let encodings: [(fn(f64, f64, f64) -> f64, DepthFormat, f64); 3] = [
-                (z_from_w, DepthFormat::Unorm24, distances[0]),
-                (z_from_w, DepthFormat::Float32, distances[1]),
-                (reversed_z_from_w, DepthFormat::Float32, distances[2]),
-            ];
-            for (encode, format, distance) in encodings {
-                let [a, b] = [from, from + 1.01 * distance].map(|w| format.stored(encode(w, near, far)));
-                assert!(a != b, "{format:?} at {from}");
+            let to = distances.map(|distance| from + 1.01 * distance);
+            for (format, to) in [(DepthFormat::Unorm24, to[0]), (DepthFormat::Float32, to[1])] {
+                let [a, b] = [from, to].map(|w| format.stored(z_from_w(w, near, far)));
+                assert!(a < b, "{format:?} at {from}");
             }
+            let stored = |w| DepthFormat::Float32.stored(reversed_z_from_w(w, near, far));
+            assert!(stored(from) > stored(to[2]), "reversed at {from}");
         }
     }
 }

@@ -40,11 +40,8 @@ pub(super) fn bounding_box(framebuffer: &mut Framebuffer, knobs: &Knobs) {
             let tint = |value: i64| if value < 0 { 90 } else { 25 };
             let [red, green, blue] = values.map(tint);
             let inside = Color::rgb(240, 170, 60);
-            screen.set(
-                x,
-                y,
-                if coverage.covers(values) { inside } else { Color::rgb(red, green, blue) },
-            );
+            let outside = Color::rgb(red, green, blue);
+            screen.set(x, y, if coverage.covers(values) { inside } else { outside });
         }
     });
 }
@@ -90,7 +87,7 @@ fn one_more(color: Color) -> Color {
 /// The pixels of a triangle by the rule of the book, row by row.
 fn by_rows(triangle: [DVec2; 3], scissor: Scissor, emit: &mut dyn FnMut(i32, i32)) {
     spans(triangle, EdgeWalk::Clamped, scissor, |span| {
-        span.columns().for_each(|x| emit(x, span.y))
+        span.columns().for_each(|x| emit(x, span.y));
     });
 }
 
@@ -152,11 +149,8 @@ pub(super) fn two_rules(framebuffer: &mut Framebuffer, knobs: &Knobs) {
         let cells = picture::draw_enlarged_within(framebuffer, half, GRID, |screen| {
             rule(triangle, screen.scissor(), &mut |x, y| {
                 let is_shared = others.contains(&(x, y));
-                screen.set(
-                    x,
-                    y,
-                    if is_shared { Color::rgb(60, 110, 190) } else { Color::rgb(240, 150, 50) },
-                );
+                let [blue, orange] = [Color::rgb(60, 110, 190), Color::rgb(240, 150, 50)];
+                screen.set(x, y, if is_shared { blue } else { orange });
             });
         });
         let mut sketch = Sketch::new(framebuffer, cells).within(half);

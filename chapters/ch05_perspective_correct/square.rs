@@ -91,19 +91,11 @@ fn textured(framebuffer: &mut Framebuffer, knobs: &Knobs, interpolation: Interpo
     let (triangles, texture) = tilted_square(knobs);
     for triangle in triangles {
         let triangle = fit.triangle(triangle);
-        step_parameter(
-            triangle,
-            interpolation,
-            Walk::default(),
-            framebuffer.scissor(),
-            |x, y, point| {
-                framebuffer.set(
-                    x,
-                    y,
-                    Color::truncated(texture.nearest(point.values, AddressMode::Clamp)),
-                );
-            },
-        );
+        let (scissor, walk) = (framebuffer.scissor(), Walk::default());
+        step_parameter(triangle, interpolation, walk, scissor, |x, y, point| {
+            let texel = texture.nearest(point.values, AddressMode::Clamp);
+            framebuffer.set(x, y, Color::truncated(texel));
+        });
     }
 }
 
@@ -130,7 +122,7 @@ pub(super) fn barycentric(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     let (triangles, texture) = tilted_square(knobs);
     for triangle in triangles {
         let triangle = fit.triangle(triangle);
-        let Some(coverage) = Coverage::new(triangle.map(|corner| corner.position)) else {
+        let Some(coverage) = Coverage::new(triangle.map(|vertex| vertex.position)) else {
             continue;
         };
         for (x, y, areas) in coverage.pixels(framebuffer.scissor()) {
@@ -162,9 +154,9 @@ fn textured_as_before(framebuffer: &mut Framebuffer, triangles: &[Triangle]) {
 
 /// A triangle that faces us.
 pub(super) fn facing(framebuffer: &mut Framebuffer) {
-    let corners =
+    let vertices =
         [([0.0, 0.0], [0.0, 0.0]), ([320.0, 480.0], [0.5, 1.0]), ([640.0, 0.0], [1.0, 0.0])];
-    textured_as_before(framebuffer, &[corners.map(|([x, y], uv)| vertex([x, y, 100.0], uv))]);
+    textured_as_before(framebuffer, &[vertices.map(|([x, y], uv)| vertex([x, y, 100.0], uv))]);
 }
 
 /// A square that faces us.

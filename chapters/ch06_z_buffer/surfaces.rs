@@ -135,9 +135,9 @@ pub(super) fn draw_square(
     test: DepthTest,
     flat: Color,
 ) {
-    let corner = |i: f64, j: f64| seen_from_middle(x + i * side, y + j * side, z);
-    draw(target, [corner(0.0, 0.0), corner(1.0, 0.0), corner(0.0, 1.0)], test, |_| flat);
-    draw(target, [corner(1.0, 0.0), corner(1.0, 1.0), corner(0.0, 1.0)], test, |_| flat);
+    let at = |i: f64, j: f64| seen_from_middle(x + i * side, y + j * side, z);
+    draw(target, [at(0.0, 0.0), at(1.0, 0.0), at(0.0, 1.0)], test, |_| flat);
+    draw(target, [at(1.0, 0.0), at(1.0, 1.0), at(0.0, 1.0)], test, |_| flat);
 }
 
 pub(super) const RED: Color = Color::rgb(225, 70, 60);

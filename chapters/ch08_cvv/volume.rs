@@ -54,9 +54,9 @@ pub(super) fn planes(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     const PANEL: f64 = 200.0;
     framebuffer.clear(Color::gray(24));
     let fit = Fit::new(framebuffer.rect(), [4.0 * PANEL, 2.0 * PANEL]);
-    let corners = [[-10_400.0, 2600.0, 90.0], [58.0, -245.0, 3.0], [820.0, 576.0, 8.0]];
+    let vertices = [[-10_400.0, 2600.0, 90.0], [58.0, -245.0, 3.0], [820.0, 576.0, 8.0]];
     let triangle =
-        corners.map(|view| ClipVertex { position: VIEW.project(DVec3::from(view)), varyings: [] });
+        vertices.map(|view| ClipVertex { position: VIEW.project(DVec3::from(view)), varyings: [] });
     let is_on = ["left", "right", "bottom", "top", "near", "far"].map(|name| knobs.is_on(name));
     for count in 0..=6 {
         let middle = PANEL * dvec2(0.5 + (count % 4) as f64, if count < 4 { 1.5 } else { 0.5 });

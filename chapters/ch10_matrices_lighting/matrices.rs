@@ -90,8 +90,8 @@ pub(super) fn rotation(canvas: &mut Canvas) {
     // Read from the right: to the origin, turn, back, project.
     let clip_from_model = camera.matrix() * translate(axis) * turn * translate(-axis);
 
-    let corners = [(-1.0, 1.0, [0.0, 1.0]), (-1.0, -1.0, [0.0, 0.0]), (1.0, -1.0, [1.0, 0.0])];
-    let vertices = corners.map(|(x, y, uv)| (dvec3(x, y, 3.0), uv)).to_vec();
+    let points = [(-1.0, 1.0, [0.0, 1.0]), (-1.0, -1.0, [0.0, 0.0]), (1.0, -1.0, [1.0, 0.0])];
+    let vertices = points.map(|(x, y, uv)| (dvec3(x, y, 3.0), uv)).to_vec();
     let state = RenderState { cull: CullMode::Back, ..RenderState::default() };
     let shader = Textured { clip_from_model, texture: Texture::book() };
     canvas.render(&Mesh::unindexed(vertices).expect("whole triangles"), &shader, &state);
@@ -173,9 +173,9 @@ fn draw_dot(canvas: &mut Canvas, clip_from_model: DMat4, panel: u32) {
     );
 }
 
-fn draw_flat(canvas: &mut Canvas, corners: &[[f64; 2]], shader: &Plain, panel: Viewport) {
+fn draw_flat(canvas: &mut Canvas, points: &[[f64; 2]], shader: &Plain, panel: Viewport) {
     let state = RenderState { viewport: Some(panel), ..RenderState::default() };
-    canvas.draw(&Mesh::unindexed(corners.to_vec()).expect("whole triangles"), shader, &state);
+    canvas.draw(&Mesh::unindexed(points.to_vec()).expect("whole triangles"), shader, &state);
 }
 
 /// Diffuse light in world space.

@@ -79,13 +79,13 @@ pub(super) const NORMALS: &[Knob] = &[
 
 /// A point of a ball of radius 1, and the normal that goes with it.
 #[derive(Clone, Copy)]
-struct Corner {
+struct BallVertex {
     position: DVec3,
     normal: DVec3,
 }
 
 /// A ball of so many rings and segments.
-fn ball(rings: u32, segments: u32) -> Mesh<Corner> {
+fn ball(rings: u32, segments: u32) -> Mesh<BallVertex> {
     let point = |ring: u32, segment: u32| {
         let (up, round) = (
             PI * f64::from(ring) / f64::from(rings),
@@ -98,8 +98,8 @@ fn ball(rings: u32, segments: u32) -> Mesh<Corner> {
         for segment in 0..segments {
             let [a, b] = [point(ring, segment), point(ring, segment + 1)];
             let [c, d] = [point(ring + 1, segment + 1), point(ring + 1, segment)];
-            for corner in [a, b, c, a, c, d] {
-                vertices.push(Corner { position: corner, normal: corner });
+            for point in [a, b, c, a, c, d] {
+                vertices.push(BallVertex { position: point, normal: point });
             }
         }
     }
@@ -107,12 +107,12 @@ fn ball(rings: u32, segments: u32) -> Mesh<Corner> {
 }
 
 /// The same ball with the normals of its faces.
-fn faceted(ball: &Mesh<Corner>) -> Mesh<Corner> {
+fn faceted(ball: &Mesh<BallVertex>) -> Mesh<BallVertex> {
     let mut vertices = Vec::new();
     for triangle in ball.vertices().chunks_exact(3) {
         let [a, b, c] = [triangle[0].position, triangle[1].position, triangle[2].position];
         let normal = (c - a).cross(b - a).normalize_or(DVec3::Y);
-        vertices.extend([a, b, c].map(|position| Corner { position, normal }));
+        vertices.extend([a, b, c].map(|position| BallVertex { position, normal }));
     }
     Mesh::unindexed(vertices).expect("whole triangles")
 }
@@ -147,15 +147,15 @@ impl Ball {
 }
 
 impl Shader<6> for Ball {
-    type Attributes = Corner;
+    type Attributes = BallVertex;
 
-    fn position(&self, corner: &Corner) -> Option<DVec3> {
-        Some(corner.position)
+    fn position(&self, vertex: &BallVertex) -> Option<DVec3> {
+        Some(vertex.position)
     }
 
-    fn vertex(&self, corner: &Corner) -> ClipVertex<6> {
-        let view = self.view_from_model * corner.position.extend(1.0);
-        let normal = self.normals * corner.normal;
+    fn vertex(&self, vertex: &BallVertex) -> ClipVertex<6> {
+        let view = self.view_from_model * vertex.position.extend(1.0);
+        let normal = self.normals * vertex.normal;
         let (view3, normal) = (view.truncate().to_array(), normal.to_array());
         let varyings = match self.frequency {
             Frequency::Vertex => {

@@ -314,13 +314,13 @@ fn draw_board(canvas: &mut Canvas, view: &View, stood: &[(DMat4, Vec<Ball>)], op
     let balls = stood.iter().flat_map(|(_, balls)| balls.clone()).collect();
     let board = Board { view: view.clone(), texture: SQUARES.clone(), balls, opacity };
     let far = 60.0;
-    let corners = vec![[-far, -far], [far, -far], [far, far], [-far, far]];
+    let vertices = vec![[-far, -far], [far, -far], [far, far], [-far, far]];
     let state = RenderState {
         merge: Merge { blend: Blend::SourceOver, ..Merge::default() },
         ..RenderState::default()
     };
     canvas.draw(
-        &Mesh::indexed(corners, vec![0, 1, 2, 0, 2, 3]).expect("two triangles"),
+        &Mesh::indexed(vertices, vec![0, 1, 2, 0, 2, 3]).expect("two triangles"),
         &board,
         &state,
     );

@@ -123,8 +123,8 @@ fn floor(
     [left, right]: [f64; 2],
     uv: impl Fn(f64, f64) -> [f64; 2],
 ) {
-    let corners = [[left, -10.0], [right, -10.0], [right, 400.0], [left, 400.0]];
-    let vertices = corners.map(|[x, z]| ([x, z], uv(x, z))).to_vec();
+    let points = [[left, -10.0], [right, -10.0], [right, 400.0], [left, 400.0]];
+    let vertices = points.map(|[x, z]| ([x, z], uv(x, z))).to_vec();
     canvas.draw(
         &Mesh::indexed(vertices, vec![0, 1, 2, 0, 2, 3]).expect("two triangles"),
         shader,

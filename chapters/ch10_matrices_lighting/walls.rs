@@ -107,8 +107,8 @@ pub(super) fn normal_mapped(canvas: &mut Canvas) {
     let mapped = assets::texture("bricks-normals.png").expect("an asset");
     for (side, normals) in [(-1.0, straight_up), (1.0, mapped)] {
         let place = translate(dvec3(1.52 * side, 0.0, 4.0)) * rotate_x_to_z(degrees(-25.0 * side));
-        let corners = vec![[-1.5, -1.6], [1.5, -1.6], [1.5, 1.6], [-1.5, 1.6]];
-        let mesh = Mesh::indexed(corners, vec![0, 1, 2, 0, 2, 3]).expect("two triangles");
+        let vertices = vec![[-1.5, -1.6], [1.5, -1.6], [1.5, 1.6], [-1.5, 1.6]];
+        let mesh = Mesh::indexed(vertices, vec![0, 1, 2, 0, 2, 3]).expect("two triangles");
         canvas.draw(&mesh, &Wall::new(place, normals, strength, lamp), &state);
     }
 }
