@@ -53,7 +53,7 @@ fn boards(
         _ => DepthFormat::Float32,
     };
     let mut target = Target::like(framebuffer);
-    target.clear(Color::BLACK, depth_of(FAR, near, FAR));
+    target.clear(Color::BLACK, format.stored(depth_of(FAR, near, FAR)));
     for (middle, distance) in places() {
         for (nearer, reach, color) in [(0.0, 1.0, GREEN), (gap, 0.65, RED)] {
             for triangle in board(middle, distance - nearer) {
