@@ -15,6 +15,7 @@ pub fn run() -> Errors {
         errors.extend(words(&text).into_iter().map(|what| format!("{name}:{what}")));
         errors.extend(histories(&text, &page).into_iter().map(|what| format!("{name}:{what}")));
         errors.extend(wide_lines(&text, &page).into_iter().map(|what| format!("{name}:{what}")));
+        errors.extend(words_of_listings(&text, &page).into_iter().map(|what| format!("{name}:{what}")));
         let length = Length::of(&text, &page);
         println!("{name}: {length}");
     }
@@ -77,6 +78,27 @@ fn words(text: &str) -> Errors {
         }
     }
     errors
+}
+
+/// Which of them are in the comments of the code that a page includes; the line is that of the page.
+fn words_of_listings(text: &str, page: &Path) -> Errors {
+    let mut errors = Vec::new();
+    for (index, line) in text.lines().enumerate() {
+        let Some((file, lines)) = listing(line, page) else { continue };
+        for what in words(&comments(&lines)) {
+            let (_, what) = what.split_once(": ").unwrap_or_default();
+            errors.push(format!("{}: a comment of {file}: {what}", index + 1));
+        }
+    }
+    errors
+}
+
+/// What stands in the comments of code, a line for each.
+fn comments(lines: &[String]) -> String {
+    let comment = |line: &String| {
+        line.split_once("//").map(|(_, text)| text.trim_start_matches(['/', '!']).trim().to_owned())
+    };
+    lines.iter().filter_map(comment).collect::<Vec<_>>().join("\n")
 }
 
 /// A text without its code; the lines stay.
@@ -234,6 +256,15 @@ mod tests {
         assert_eq!(found.len(), 2, "{found:?}");
         assert!(found.iter().any(|it| it.starts_with("1: \"goes ahead\"")), "{found:?}");
         assert!(found.iter().any(|it| it.starts_with("7: \"upright\"")), "{found:?}");
+    }
+
+    #[test]
+    fn words_are_found_in_comments_of_code() {
+        let code =
+            ["/// It goes", "/// ahead, and `aslant`.", "let stairs = 1; // upright", "let evenly = 2;"];
+        let found = words(&comments(&code.map(ToOwned::to_owned)));
+        assert_eq!(found.len(), 2, "{found:?}");
+        assert!(found[0].contains("upright") && found[1].contains("goes ahead"), "{found:?}");
     }
 
     #[test]
