@@ -134,7 +134,7 @@ fn rays(framebuffer: &mut Framebuffer, axis: StepAxis, turn: f64) {
 fn wireframe(framebuffer: &mut Framebuffer, subject: &Subject) {
     let fit = Fit::new(framebuffer.rect(), [480.0, 480.0]);
     let on_screen = |point: DVec3| fit.at(dvec2(240.0, 240.0) + point.truncate() * 135.0);
-    for part in &subject.model.parts {
+    for part in subject.model.parts.iter() {
         let vertices = part.mesh.vertices();
         for triangle in part.mesh.triangles() {
             let [a, b, c] = triangle.map(|index| on_screen(vertices[index].position));

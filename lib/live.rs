@@ -99,7 +99,7 @@ const DEGREES_PER_PIXEL: f64 = 0.5;
 const FACTORS: [u32; 11] = [1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 64];
 
 /// A figure, and how it is looked at.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Live<'a> {
     chapter: &'a Chapter,
     given: Given,
@@ -437,6 +437,21 @@ impl<'a> Live<'a> {
         }
     }
 
+    /// A draft of the picture in about 1 / `divisor`² of the time: it is drawn with sides so many times shorter, and its pixels are
+    /// enlarged. `None` where single pixels are what the variant is about, or what is looked at.
+    #[must_use]
+    pub fn draft(&self, divisor: u32) -> Option<Framebuffer> {
+        if self.scene.variant.in_pixels || self.magnification > 0 {
+            return None;
+        }
+        let (width, height) = self.scene.size;
+        let scene = Scene { size: (width.div_ceil(divisor), height.div_ceil(divisor)), ..self.scene.clone() };
+        let small = Self { scene, ..self.clone() }.whole_picture();
+        let mut draft = Framebuffer::new(width, height);
+        fill_blocks(&mut draft, &small, small.rect(), divisor);
+        Some(draft)
+    }
+
     /// What is shown of the whole picture: all of it, or a part with large pixels and a grid, in the same size.
     #[must_use]
     pub fn shown(&self, whole: Framebuffer) -> Framebuffer {
@@ -577,6 +592,17 @@ mod tests {
             live.apply(*event).expect("no model");
         }
         live
+    }
+
+    #[test]
+    fn a_draft_has_large_pixels_and_the_same_size() {
+        let draft = live().draft(4).expect("nothing is magnified");
+        assert_eq!((draft.width(), draft.height()), (40, 30));
+        let (level, dot) = seen(&draft);
+        // (4, 6) is (1, 1) of 10 × 8 pixels, and the mistake's one is one farther to the right.
+        assert_eq!((level, dot), (100, Some((8, 4))));
+        assert_eq!(draft.get(11, 7), Some(Color::WHITE), "a pixel of four by four");
+        assert!(play(live(), &[Event::Magnify(1, (5, 6))]).draft(4).is_none(), "single pixels are looked at");
     }
 
     /// The level of gray, and where the white dot is.

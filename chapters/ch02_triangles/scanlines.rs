@@ -117,7 +117,7 @@ fn tree(framebuffer: &mut Framebuffer, edges: EdgeWalk, tilt: f64) {
 /// A model's triangles, seen along z, from far to near; each in one gray.
 pub(super) fn facets(framebuffer: &mut Framebuffer, subject: &Subject) {
     let mut triangles: Vec<[DVec3; 3]> = Vec::new();
-    for part in &subject.model.parts {
+    for part in subject.model.parts.iter() {
         let vertices = part.mesh.vertices();
         triangles.extend(
             part.mesh.triangles().map(|triangle| triangle.map(|index| vertices[index].position)),

@@ -85,7 +85,7 @@ fn draw_subject(canvas: &mut Canvas, subject: &Subject, walk: Walk) {
     let clip_from_model = CAMERA.matrix() * view_from_model;
     let (to_light, ambient) =
         (to_light(&canvas.knobs, LIGHT, TO_LIGHT), canvas.knobs.number("ambient"));
-    for part in &subject.model.parts {
+    for part in subject.model.parts.iter() {
         let texture = subject.texture_of(part);
         let shader = Lit { clip_from_model, view_from_model, texture, to_light, ambient };
         canvas.draw(&part.mesh, &shader, &state);

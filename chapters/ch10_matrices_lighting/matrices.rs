@@ -249,7 +249,7 @@ pub(super) fn camera(canvas: &mut Canvas) {
         let texture = assets::texture(texture).expect("an asset");
         // The models stand about (0, 0, 4).
         let world_from_model = translate(place) * scale(size) * translate(dvec3(0.0, 0.0, -4.0));
-        for part in &model.parts {
+        for part in model.parts.iter() {
             let shader =
                 LitInWorld { clip_from_world, world_from_model, texture: texture.clone(), repeat };
             canvas.draw(&part.mesh, &shader, &state);

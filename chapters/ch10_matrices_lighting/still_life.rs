@@ -136,7 +136,9 @@ impl Thing {
 struct Board {
     view: View,
     texture: MipMaps,
-    balls: Vec<Ball>,
+    /// What keeps the sun away, and what the sky.
+    sun: Vec<Ball>,
+    sky: Vec<Ball>,
     opacity: f64,
 }
 
@@ -174,14 +176,18 @@ impl Board {
         let (zero, one) = (R::of(0.0), R::of(1.0));
         let to_light = self.view.to_light;
         let (mut sun, mut sky) = (one, one);
-        for &(center, radius) in &self.balls {
-            let way = [R::of(center[0]) - x, R::of(center[1]), R::of(center[2]) - z];
+        let way = |center: [f64; 3]| [R::of(center[0]) - x, R::of(center[1]), R::of(center[2]) - z];
+        for &(center, radius) in &self.sun {
+            let way = way(center);
             let along = dot(way, to_light.map(R::of));
             let distance = (dot(way, way) - along * along).max(zero).sqrt();
             // The farther the ball, the softer its shadow.
             let soft = along.max(zero) * R::of(0.05) + R::of(0.015);
             let shadow = ((R::of(radius) + soft - distance) / (soft + soft)).max(zero).min(one);
             sun = sun * (one - shadow);
+        }
+        for &(center, radius) in &self.sky {
+            let way = way(center);
             let hidden = R::of(radius * radius) / dot(way, way);
             sky = sky * (one - (hidden * R::of(0.8)).min(R::of(0.8)));
         }
@@ -226,7 +232,7 @@ type Piece = (&'static str, &'static str, [f64; 2], f64, [f64; 3]);
 const BRIGHT: [f64; 3] = [1.25, 1.2, 1.1];
 const DARK: [f64; 3] = [0.3, 0.2, 0.16];
 
-const PIECES: [Piece; 9] = [
+static PIECES: [Piece; 9] = [
     ("pawn.obj", "wood.png", [-0.5, -1.5], 1.35, BRIGHT),
     ("pawn.obj", "wood.png", [1.5, -0.5], 1.35, DARK),
     ("pawn.obj", "wood.png", [-2.5, 0.5], 1.35, BRIGHT),
@@ -238,32 +244,51 @@ const PIECES: [Piece; 9] = [
     ("sphere.obj", "numbers.png", [-1.5, -0.5], 0.8, [0.9; 3]),
 ];
 
-/// Where a piece stands, and the balls that its shadow is made of.
-fn stand((model, _, [x, z], height, _): &Piece) -> (DMat4, Vec<Ball>) {
-    let half = if *model == "pawn.obj" { 1.404 } else { 1.0 };
+/// The balls that shadow the board: up, and the radius, of a piece of height 1. The sun's shadow shows a piece's outline; from
+/// the sky, which comes from everywhere, few balls do.
+const PAWN_IN_THE_SUN: &[[f64; 2]] = &[
+    [0.07, 0.3],
+    [0.2, 0.2],
+    [0.33, 0.14],
+    [0.47, 0.11],
+    [0.6, 0.11],
+    [0.66, 0.17],
+    [0.85, 0.165],
+];
+const PAWN_BELOW_THE_SKY: &[[f64; 2]] = &[[0.1, 0.37], [0.62, 0.31]];
+const BALL: &[[f64; 2]] = &[[0.5, 0.5]];
+
+fn is_pawn((model, ..): &Piece) -> bool {
+    *model == "pawn.obj"
+}
+
+/// Where a piece stands.
+fn world_from_model(piece: &Piece) -> DMat4 {
+    let (_, _, [x, z], height, _) = piece;
+    let half = if is_pawn(piece) { 1.404 } else { 1.0 };
     let size = height / (2.0 * half);
     let turn = rotate_x_to_z(x * 1.7 + z);
     // The models stand about (0, 0, −4) of their files, (0, 0, 4) of ours.
-    let world_from_model = translate(dvec3(*x, height / 2.0, *z))
+    translate(dvec3(*x, height / 2.0, *z))
         * turn
         * scale(DVec3::splat(size))
-        * translate(dvec3(0.0, 0.0, -4.0));
-    let outline: &[(f64, f64)] = match *model {
-        "pawn.obj" => &[
-            (0.07, 0.3),
-            (0.2, 0.2),
-            (0.33, 0.14),
-            (0.47, 0.11),
-            (0.6, 0.11),
-            (0.66, 0.17),
-            (0.85, 0.165),
-        ],
-        _ => &[(0.5, 0.5)],
-    };
-    let balls =
-        outline.iter().map(|&(up, radius)| ([*x, up * height, *z], radius * height)).collect();
-    (world_from_model, balls)
+        * translate(dvec3(0.0, 0.0, -4.0))
 }
+
+/// The balls of all pieces, where `of_pawn` are those of a pawn.
+fn balls(of_pawn: &[[f64; 2]]) -> Vec<Ball> {
+    let of_piece = |piece: &'static Piece| {
+        let (_, _, [x, z], height, _) = piece;
+        let outline = if is_pawn(piece) { of_pawn } else { BALL };
+        outline.iter().map(move |[up, radius]| ([*x, up * height, *z], radius * height))
+    };
+    PIECES.iter().flat_map(of_piece).collect()
+}
+
+/// The textures of the pieces, made once for all frames.
+static COATS: LazyLock<[MipMaps; 2]> = LazyLock::new(|| {
+    ["wood.png", "numbers.png"].map(|name| MipMaps::new(&assets::texture(name).expect("an asset")))
+});
 
 /// Pieces on a polished board, one turn of the camera in all frames.
 pub(super) fn still_life(canvas: &mut Canvas) {
@@ -277,7 +302,6 @@ pub(super) fn still_life(canvas: &mut Canvas) {
         to_light(&knobs, ["sun-azimuth", "sun-elevation"], TO_LIGHT),
     );
     let view = View { clip_from_world, eye: eye.to_array(), to_light };
-    let stood: Vec<(DMat4, Vec<Ball>)> = PIECES.iter().map(stand).collect();
 
     let state = RenderState {
         cull: CullMode::Back,
@@ -285,8 +309,7 @@ pub(super) fn still_life(canvas: &mut Canvas) {
         load: LoadOp::Clear,
         ..RenderState::default()
     };
-    let [wood, numbers] = ["wood.png", "numbers.png"]
-        .map(|name| MipMaps::new(&assets::texture(name).expect("an asset")));
+    let [wood, numbers]: &[MipMaps; 2] = &COATS;
     let mut load = LoadOp::Clear;
     // First what the board reflects, upside down: fronts run the other way there.
     let mirror = scale(dvec3(1.0, -1.0, 1.0));
@@ -294,15 +317,16 @@ pub(super) fn still_life(canvas: &mut Canvas) {
         [(mirror, Winding::Clockwise), (DMat4::IDENTITY, Winding::CounterClockwise)]
     {
         if front_face == Winding::CounterClockwise {
-            draw_board(canvas, &view, &stood, knobs.number("opacity"));
+            draw_board(canvas, &view, knobs.number("opacity"));
         }
-        for ((model, texture, _, _, tint), (world_from_model, _)) in PIECES.iter().zip(&stood) {
+        for piece in &PIECES {
+            let (model, texture, _, _, tint) = piece;
             let texture = if *texture == "wood.png" { wood.clone() } else { numbers.clone() };
-            let repeat = if *model == "pawn.obj" { [3.0, 1.0] } else { [1.0, 1.0] };
-            let world_from_model = reflect * *world_from_model;
+            let repeat = if is_pawn(piece) { [3.0, 1.0] } else { [1.0, 1.0] };
+            let world_from_model = reflect * world_from_model(piece);
             let thing =
                 Thing { view: view.clone(), world_from_model, texture, tint: *tint, repeat };
-            for part in &assets::model(model).expect("an asset").parts {
+            for part in assets::model(model).expect("an asset").parts.iter() {
                 canvas.draw(&part.mesh, &thing, &RenderState { front_face, load, ..state });
                 load = LoadOp::Load;
             }
@@ -310,9 +334,9 @@ pub(super) fn still_life(canvas: &mut Canvas) {
     }
 }
 
-fn draw_board(canvas: &mut Canvas, view: &View, stood: &[(DMat4, Vec<Ball>)], opacity: f64) {
-    let balls = stood.iter().flat_map(|(_, balls)| balls.clone()).collect();
-    let board = Board { view: view.clone(), texture: SQUARES.clone(), balls, opacity };
+fn draw_board(canvas: &mut Canvas, view: &View, opacity: f64) {
+    let [sun, sky] = [PAWN_IN_THE_SUN, PAWN_BELOW_THE_SKY].map(balls);
+    let board = Board { view: view.clone(), texture: SQUARES.clone(), sun, sky, opacity };
     let far = 60.0;
     let vertices = vec![[-far, -far], [far, -far], [far, far], [-far, far]];
     let state = RenderState {

@@ -171,7 +171,7 @@ pub(super) fn turntable(canvas: &mut Canvas, subject: &Subject) {
 
     canvas.clear(&RenderState::default());
     backdrop(canvas.picture_mut(), knobs.color("background"));
-    for part in &subject.model.parts {
+    for part in subject.model.parts.iter() {
         let texture = &subject.texture_of(part);
         let maps = &MipMaps::new(texture);
         // Files from elsewhere do not always turn their fronts outwards: backs are drawn too, lit from their own side.

@@ -34,6 +34,7 @@ mod text;
 mod triangulate;
 
 use std::path::Path;
+use std::sync::Arc;
 
 use crate::files::{FileError, Warnings, read_file, shown, shown_path};
 use crate::mesh::Mesh;
@@ -67,8 +68,8 @@ pub struct Part {
 /// A model, as it comes from a file.
 #[derive(Clone, Debug)]
 pub struct Model {
-    /// All its objects and groups.
-    pub parts: Vec<Part>,
+    /// All its objects and groups. Copies of a model share them.
+    pub parts: Arc<[Part]>,
 }
 
 /// How normals are made where a file has none.
@@ -135,7 +136,7 @@ impl Model {
         }
         let (parts, more) = parts.finish().map_err(failure)?;
         warnings.extend(more.into_iter().map(of_this));
-        Ok((Self { parts }, limited(warnings)))
+        Ok((Self { parts: parts.into() }, limited(warnings)))
     }
 
     /// Whether its corners have texture coordinates that differ; without them a texture shows one texel alone.
@@ -176,7 +177,7 @@ impl Model {
     pub fn fitted(mut self, center: DVec3, radius: f64) -> Self {
         let (middle, size) = self.bounding_sphere();
         let scaled = |offset: DVec3| if size > 0.0 { offset / size * radius } else { offset };
-        for part in &mut self.parts {
+        for part in Arc::make_mut(&mut self.parts) {
             part.mesh = part
                 .mesh
                 .map(|vertex| ModelVertex { position: center + scaled(vertex.position - middle), ..*vertex });

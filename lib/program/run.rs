@@ -1,5 +1,6 @@
 //! What a chapter's program does with its arguments.
 
+use std::ffi::OsString;
 use std::io::IsTerminal;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -28,29 +29,32 @@ impl Chapter {
     /// The whole program: reads the arguments, draws, writes, reports.
     #[must_use]
     pub fn main(&self) -> ExitCode {
-        main(self)
+        self.main_with(std::env::args_os())
+    }
+
+    /// The same with arguments of the caller's, the program's own name first.
+    #[must_use]
+    pub fn main_with(&self, arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+        match Request::parse(self, arguments) {
+            Ok(request) => ended(run(self, &request)),
+            Err(error) => refused(&error),
+        }
     }
 }
 
-/// Reads the arguments, does what they say, reports.
-fn main(chapter: &Chapter) -> ExitCode {
-    let request = match Request::parse(chapter, std::env::args_os()) {
-        Ok(request) => request,
-        Err(error) if error.kind() == ErrorKind::DisplayHelp => {
-            let help = wrap_columns(&error.to_string(), terminal_width().unwrap_or(WIDEST));
-            return ended(say(help.trim_end()));
-        }
-        Err(error) => {
-            // The version goes to standard output, errors to standard error; a closed pipe is not worth a word.
-            if error.use_stderr() {
-                note(error.to_string().trim_end());
-            } else {
-                let _ = error.print();
-            }
-            return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
-        }
-    };
-    ended(run(chapter, &request))
+/// Says what is wrong with the arguments; or help, or the version.
+fn refused(error: &clap::Error) -> ExitCode {
+    if error.kind() == ErrorKind::DisplayHelp {
+        let help = wrap_columns(&error.to_string(), terminal_width().unwrap_or(WIDEST));
+        return ended(say(help.trim_end()));
+    }
+    // The version goes to standard output, errors to standard error; a closed pipe is not worth a word.
+    if error.use_stderr() {
+        note(error.to_string().trim_end());
+    } else {
+        let _ = error.print();
+    }
+    ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2))
 }
 
 /// Says what went wrong, if anything did.

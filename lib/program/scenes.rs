@@ -169,7 +169,7 @@ pub(super) fn unseen(path: &Path, scene: &Scene<'_>, picture: &Framebuffer) -> O
         let texture = Some(Texture::new(1, 1, vec![Color::WHITE]));
         scene.variant.draw(&DrawOptions { subject: Some(&Subject { model, texture }), ..scene.options(None) })
     };
-    let empty = drawn(Model { parts: Vec::new() });
+    let empty = drawn(Model { parts: [].into() });
     if *picture != empty || drawn(subject.model.clone()) != empty {
         return None;
     }

@@ -3,6 +3,9 @@
 #[path = "../support/chapters.rs"]
 mod chapters;
 mod fingerprints;
+#[path = "../fuzz/src/targets/mod.rs"]
+mod fuzz;
 mod knobs;
 mod rasterizers;
+mod seeds;
 mod sizes;

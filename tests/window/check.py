@@ -288,6 +288,19 @@ def model(display, folder, binaries):
     program.close()
 
 
+def slow(display, folder, binaries):
+    """Chapter 10: a picture that takes long is a draft until it is there."""
+    program = Program(display, folder, binaries, "ch10_matrices_lighting", "still-life", "--size", "640x480")
+    program.shows(program.drawn(), "the first picture")
+    program.key("r", " scanline .*a draft")
+    program.shows(program.drawn("--rasterizer", "scanline"), "R, another rasterizer, slowly")
+    program.wait(lambda: "a draft" not in program.title(), "end of the draft")
+    for _ in range(12):
+        program.key("Right")
+    program.shows(program.drawn("--rasterizer", "scanline", "--set", "azimuth=32"), "a knob, twelve times")
+    program.close()
+
+
 def without_display(binaries):
     environment = {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")}
     run = subprocess.run([binaries / "ch01_pixels", "--window"], env=environment, capture_output=True, text=True, timeout=SECONDS)
@@ -297,7 +310,7 @@ def without_display(binaries):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
-    parser.add_argument("--only", help="one of mistake, points, model")
+    parser.add_argument("--only", help="one of mistake, points, model, slow")
     parser.add_argument("--release", action="store_true", help="the release build, to measure")
     arguments = parser.parse_args()
     missing = [tool for tool in TOOLS if shutil.which(tool) is None]
@@ -308,7 +321,7 @@ def main():
     target = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
     binaries = target / ("release" if arguments.release else "debug")
     with tempfile.TemporaryDirectory() as folder, Display() as display:
-        for scene in (mistake, points, model):
+        for scene in (mistake, points, model, slow):
             if arguments.only not in (None, scene.__name__):
                 continue
             print(scene.__doc__)

@@ -1,17 +1,21 @@
 //! The live window: its keys and buttons become events of [`crate::live`], and it shows the picture that comes of them.
 
+mod painter;
+
 use std::cell::RefCell;
 use std::rc::Rc;
+use std::thread::scope;
 use std::time::{Duration, Instant};
 
 use minifb::{InputCallback, Key, MouseButton, MouseMode, Window, WindowOptions};
 
+use self::painter::{Gone, Painted, Painter};
 use super::arguments::Request;
 use super::failure::Failure;
 use super::output::{Destination, note, say};
 use super::scenes::{load, picture_name, runtime_failure, scene_of, sweepable};
 use crate::color::Color;
-use crate::figure::{Chapter, Variant};
+use crate::figure::{Chapter, RasterizerChoice, Variant};
 use crate::framebuffer::Framebuffer;
 use crate::inspect::heat_legend;
 use crate::live::{Event, Live, View};
@@ -34,6 +38,10 @@ const BORDER: u32 = 0x20_20_20;
 const ROOM: (u32, u32) = (640, 480);
 /// The most pictures a second.
 const RATE: usize = 60;
+/// How long the window waits for a picture before it shows a draft.
+const PATIENCE: Duration = Duration::from_millis(12);
+/// From here on, and where it is not known, a draft's sides are a fourth as long, below half as long.
+const LONG: Duration = Duration::from_millis(80);
 
 /// Opens the window on a variant, and returns when it is closed. What is saved goes to `destination`.
 pub(super) fn open_window(
@@ -68,22 +76,35 @@ fn show(live: Live<'_>, destination: &Destination) -> Result<(), Failure> {
     let keys = Keys::default();
     window.set_input_callback(Box::new(keys.clone()));
     note(HELP);
-    let mut view = Viewer {
-        live,
-        destination,
-        shown: Shown::default(),
-        keys,
-        is_closed: false,
-        pointer: None,
-        pressed: None,
-        ticked: Instant::now(),
-    };
-    while window.is_open() && !view.is_closed {
-        view.frame(&mut window)?;
-    }
-    let Shown { count, slowest, .. } = view.shown;
-    note(&format!("{count} pictures drawn, the slowest in {:.1} ms", slowest.as_secs_f64() * 1e3));
-    Ok(())
+    scope(|scope| {
+        let mut view = Viewer {
+            live,
+            painter: Painter::start(scope).map_err(|error| {
+                Failure::Runtime(format!("the thread that draws cannot be started: {error}"))
+            })?,
+            changes: 1,
+            destination,
+            shown: Shown::default(),
+            keys,
+            is_closed: false,
+            pointer: None,
+            pressed: None,
+            ticked: Instant::now(),
+        };
+        while window.is_open() && !view.is_closed {
+            view.frame(&mut window)?;
+        }
+        let Shown { count, slowest, longest_wait, .. } = view.shown;
+        let [slowest, wait] = [slowest, longest_wait].map(|time| time.as_secs_f64() * 1e3);
+        note(&format!(
+            "{count} pictures drawn, the slowest in {slowest:.1} ms; the window never waited longer than {wait:.1} ms"
+        ));
+        Ok(())
+    })
+}
+
+fn gone(_: Gone) -> Failure {
+    Failure::Runtime("the thread that draws has ended".to_owned())
 }
 
 fn no_window(error: minifb::Error) -> Failure {
@@ -115,16 +136,32 @@ impl Keys {
 /// The picture on the window, and what drawing cost.
 #[derive(Default)]
 struct Shown {
-    /// The whole picture, if it is that of now.
+    /// The whole picture, if it is shown.
     whole: Option<Framebuffer>,
-    /// What is shown of it.
+    /// What is shown of it, or a draft.
     picture: Option<Framebuffer>,
+    /// After how many changes each was drawn.
+    whole_of: u64,
+    picture_of: u64,
     buffer: Vec<u32>,
     size: (usize, usize),
     title: String,
     took: Duration,
+    /// What was drawn in that time.
+    took_by: Option<(&'static str, RasterizerChoice)>,
     count: u32,
     slowest: Duration,
+    /// The longest time in which the window did nothing else than to wait for a picture or to draw a draft.
+    longest_wait: Duration,
+}
+
+impl Shown {
+    /// Another picture takes the place of the one that is shown.
+    fn show(&mut self, picture: Framebuffer, number: u64) {
+        (self.whole, self.picture, self.picture_of) = (None, Some(picture), number);
+        // It has to be laid out.
+        self.size = (0, 0);
+    }
 }
 
 /// How the picture lies in the window: its scale, and where its upper left pixel is.
@@ -154,6 +191,9 @@ impl Layout {
 
 struct Viewer<'a> {
     live: Live<'a>,
+    painter: Painter<'a>,
+    /// How often what is looked at has changed.
+    changes: u64,
     destination: &'a Destination,
     shown: Shown,
     keys: Keys,
@@ -182,9 +222,7 @@ impl Viewer<'_> {
 
     fn apply(&mut self, event: Event) -> Result<(), Failure> {
         let changed = self.live.apply(event).map_err(runtime_failure)?;
-        if changed {
-            self.shown.picture = None;
-        }
+        self.changes += u64::from(changed);
         Ok(())
     }
 
@@ -304,16 +342,9 @@ impl Viewer<'_> {
     /// Draws if something has changed, and shows it.
     fn draw(&mut self, window: &mut Window) -> Result<(), Failure> {
         let size = window.get_size();
-        if self.shown.picture.is_none() {
-            let begun = Instant::now();
-            let whole = self.live.whole_picture();
-            self.shown.picture = Some(self.live.shown(whole.clone()));
-            self.shown.whole = Some(whole);
-            self.shown.took = begun.elapsed();
-            self.shown.count += 1;
-            self.shown.slowest = self.shown.slowest.max(self.shown.took);
-            self.shown.size = (0, 0);
-        }
+        let begun = Instant::now();
+        self.paint().map_err(gone)?;
+        self.shown.longest_wait = self.shown.longest_wait.max(begun.elapsed());
         let Shown { picture: Some(picture), buffer, size: before, .. } = &mut self.shown else {
             return Ok(());
         };
@@ -329,13 +360,55 @@ impl Viewer<'_> {
         Ok(())
     }
 
+    /// Gets the picture of now; a draft, if it takes long.
+    fn paint(&mut self) -> Result<(), Gone> {
+        if self.shown.whole_of == self.changes {
+            return Ok(());
+        }
+        let finished = self.painter.finished(Duration::ZERO)?;
+        self.take(finished);
+        if self.shown.whole_of != self.changes && self.painter.begin(self.changes, &self.live)? {
+            let finished = self.painter.finished(PATIENCE)?;
+            self.take(finished);
+        }
+        if self.shown.picture_of != self.changes {
+            let is_short = self.shown.took_by == Some(self.drawn_by()) && self.shown.took < LONG;
+            let divisor = if is_short { 2 } else { 4 };
+            if let Some(draft) = self.live.draft(divisor) {
+                self.shown.show(draft, self.changes);
+            }
+        }
+        Ok(())
+    }
+
+    /// Which variant is drawn, and with which rasterizer: what decides how long it takes.
+    fn drawn_by(&self) -> (&'static str, RasterizerChoice) {
+        let scene = self.live.scene();
+        (scene.variant.name, scene.rasterizer)
+    }
+
+    /// Shows a picture if it is that of now.
+    fn take(&mut self, painted: Option<Painted>) {
+        let Some(Painted { number, picture, took }) = painted else {
+            return;
+        };
+        let by = self.drawn_by();
+        let shown = &mut self.shown;
+        (shown.took, shown.slowest, shown.count) = (took, shown.slowest.max(took), shown.count + 1);
+        if number == self.changes {
+            shown.show(self.live.shown(picture.clone()), number);
+            (shown.whole, shown.whole_of, shown.took_by) = (Some(picture), number, Some(by));
+        }
+    }
+
     fn title(&mut self, window: &mut Window) {
         let under = self.pointer.and_then(|shown| {
             let pixel = self.live.pixel_at(shown)?;
             Some(format!(" · {}", Live::told(pixel, self.shown.whole.as_ref()?.get(pixel.0, pixel.1)?)))
         });
         let took = self.shown.took.as_secs_f64() * 1e3;
-        let title = format!("{} · {took:.1} ms{}", self.live.status(), under.unwrap_or_default());
+        let draft = if self.shown.whole.is_some() { "" } else { " · a draft" };
+        let title = format!("{}{draft} · {took:.1} ms{}", self.live.status(), under.unwrap_or_default());
         if title != self.shown.title {
             window.set_title(&title);
             self.shown.title = title;

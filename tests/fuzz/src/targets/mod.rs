@@ -1,0 +1,10 @@
+//! Whatever the bytes are: no panic, no hang, and what the documentation promises.
+
+mod bytes;
+mod figures;
+mod files;
+mod scenes;
+
+pub(crate) use figures::history;
+pub(crate) use files::{image, model};
+pub(crate) use scenes::{polygon, scene};
