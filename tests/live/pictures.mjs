@@ -2,7 +2,7 @@
 //
 //     node tests/live/pictures.mjs MODULE LIST
 //
-// LIST has a line for each picture: chapter, variant, rasterizer, frame, fingerprint. tests/scenes writes it.
+// LIST has a line for each picture: chapter, variant, rasterizer, frame, fingerprint. tests/chapters writes it.
 import { readFileSync } from "node:fs";
 
 const [module, list] = process.argv.slice(2);

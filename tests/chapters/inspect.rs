@@ -1,9 +1,6 @@
 //! The histories of pixels: what is reported is what stands in the picture, and its numbers are those of the formulas.
 
-#[path = "support/chapters.rs"]
-mod chapters;
-
-use chapters::{CHAPTERS, variant};
+use crate::chapters::{CHAPTERS, variant};
 use rasterbook::figure::{DrawOptions, RasterizerChoice, Variant};
 use rasterbook::inspect::{History, histories, history};
 use rasterbook::{Color, Framebuffer, Pixel};
@@ -172,7 +169,7 @@ const PINNED: [(&str, &str, Pixel); 13] = [
 #[test]
 fn histories_are_as_before() {
     let mut settings = insta::Settings::clone_current();
-    settings.set_snapshot_path("histories");
+    settings.set_snapshot_path("../histories");
     settings.set_prepend_module_to_snapshot(false);
     settings.set_omit_expression(true);
     let mut names = Vec::new();

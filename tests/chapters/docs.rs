@@ -1,13 +1,10 @@
 //! The pages in `docs/` and the README cannot drift: what they include, show, name and link to exists.
 
-#[path = "support/chapters.rs"]
-mod chapters;
-
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use chapters::CHAPTERS;
+use crate::chapters::CHAPTERS;
 use rasterbook::figure::picture::difference;
 use rasterbook::figure::{Mistake, Variant};
 

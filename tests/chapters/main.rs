@@ -1,10 +1,14 @@
-//! What a scene depends on, for every variant: its size, its knobs, and its rasterizer. One program, since each contains all chapters.
+//! Everything that is tested with the chapters' own tables. One program, since each contains all chapters.
 
+mod artefacts;
 #[path = "../support/chapters.rs"]
 mod chapters;
+mod command_line;
+mod docs;
 mod fingerprints;
 #[path = "../fuzz/src/targets/mod.rs"]
 mod fuzz;
+mod inspect;
 mod knobs;
 mod rasterizers;
 mod seeds;

@@ -1,12 +1,9 @@
 //! The command line that all programs share: what is written, what is said, and with which exit code.
 
-#[path = "support/chapters.rs"]
-mod chapters;
-
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
-use chapters::CHAPTERS;
+use crate::chapters::CHAPTERS;
 use rasterbook::figure::Variant;
 use rasterbook::program::PROGRAMS;
 

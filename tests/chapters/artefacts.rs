@@ -1,9 +1,6 @@
 //! Each deliberate mistake shows its artefact, and its remedy does not: measured in the pictures themselves.
 
-#[path = "support/chapters.rs"]
-mod chapters;
-
-use chapters::{CHAPTERS, variant};
+use crate::chapters::{CHAPTERS, variant};
 use rasterbook::figure::Mistake;
 use rasterbook::{Color, Framebuffer};
 
