@@ -143,7 +143,14 @@ const COLORS: [[Color; 6]; 4] = [
         Color::rgb(0, 255, 255),
         Color::rgb(255, 0, 255),
     ],
-    [Color::gray(255), Color::gray(204), Color::gray(153), Color::gray(102), Color::gray(51), Color::gray(0)],
+    [
+        Color::gray(255),
+        Color::gray(204),
+        Color::gray(153),
+        Color::gray(102),
+        Color::gray(51),
+        Color::gray(0),
+    ],
     [
         Color::rgb(255, 128, 0),
         Color::rgb(255, 192, 203),
@@ -187,7 +194,8 @@ fn subpixels(framebuffer: &mut Framebuffer, knobs: &Knobs) {
             let lamps = [Color::rgb(red, 0, 0), Color::rgb(0, green, 0), Color::rgb(0, 0, blue)];
             for (i, lamp) in (0..).zip(lamps) {
                 let left = left + 2 + i * 16;
-                let rect = Rect { left, bottom: bottom + 3, right: left + 14, top: bottom + CELL - 3 };
+                let rect =
+                    Rect { left, bottom: bottom + 3, right: left + 14, top: bottom + CELL - 3 };
                 framebuffer.fill(fit.rect(rect), lamp);
             }
 

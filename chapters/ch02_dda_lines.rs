@@ -53,7 +53,11 @@ pub(crate) const CHAPTER: Chapter = Chapter {
 };
 
 const LINE: &[Knob] = &[
-    Knob::point("a", [100.0, 0.0], "bring it above b: the end that is left out is still the upper one"),
+    Knob::point(
+        "a",
+        [100.0, 0.0],
+        "bring it above b: the end that is left out is still the upper one",
+    ),
     Knob::point(
         "b",
         [100.0, 300.0],
@@ -115,7 +119,8 @@ fn rays(framebuffer: &mut Framebuffer, axis: StepAxis, turn: f64) {
             // Up the right side of the square, or along its top to the left; then rotated by
             // quarter turns.
             let along = 38.0 * f64::from(i);
-            let ray = if octant % 2 == 0 { dvec2(228.0, along) } else { dvec2(228.0 - along, 228.0) };
+            let ray =
+                if octant % 2 == 0 { dvec2(228.0, along) } else { dvec2(228.0 - along, 228.0) };
             let ray = (0..octant / 2).fold(ray, |ray, _| ray.perp());
             let ray = cos * ray + sin * ray.perp();
             draw_line(framebuffer, fit.at(center), fit.at(center + ray), axis, color);

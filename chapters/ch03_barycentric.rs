@@ -13,7 +13,7 @@ use rasterbook::exact::edge::Coverage;
 use rasterbook::figure::{Chapter, Fit, Knob, Knobs, Variant, picture};
 use rasterbook::interpolate::{ScreenVertex, barycentric_weights, step_values};
 use rasterbook::line::{StepAxis, dda};
-use rasterbook::payload::{StepLimit, Walk};
+use rasterbook::payload::{StepClamp, Walk};
 use rasterbook::scanline::{EdgeWalk, spans};
 use rasterbook::texture::{AddressMode, Texture};
 use rasterbook::{Color, Framebuffer};
@@ -32,10 +32,10 @@ pub(crate) const CHAPTER: Chapter = Chapter {
             .source("section 3.3, Figures 3-10 and 3-11"),
         Variant::new("spikes", spikes, "orange: values out of the range of the vertices, at the tips (past the end of an edge) and at the ends of rows")
             .source("section 11.4")
-            .remedied_by("limited"),
-        Variant::new("limited-edges", limited_edges, "the same, clamped along the edges as in the book: the tips are right, the ends of rows are not")
+            .remedied_by("clamped"),
+        Variant::new("clamped-edges", clamped_edges, "the same, clamped along the edges as in the book: the tips are right, the ends of rows are not")
             .source("section 11.4"),
-        Variant::new("limited", limited, "the same, clamped along the rows too: no orange pixel is left"),
+        Variant::new("clamped", clamped, "the same, clamped along the rows too: no orange pixel is left"),
     ],
 };
 
@@ -45,17 +45,28 @@ fn vertex<const N: usize>(position: DVec2, values: [f64; N]) -> ScreenVertex<[f6
 }
 
 const GRAY: &[Knob] = &[
-    Knob::point("a", [100.0, 0.0], "the gray stays the same along every parallel to the edge from a to c"),
+    Knob::point(
+        "a",
+        [100.0, 0.0],
+        "the gray stays the same along every parallel to the edge from a to c",
+    ),
     Knob::point("b", [0.0, 100.0], "the farther it is from a and c, the slower the gray changes"),
-    Knob::point("c", [100.0, 200.0], "bring it to the height of a: now the gray changes from row to row"),
+    Knob::point(
+        "c",
+        [100.0, 200.0],
+        "bring it to the height of a: now the gray changes from row to row",
+    ),
 ];
 
 // ANCHOR: gray
 /// One value a vertex, drawn as gray.
 fn gray(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     let fit = Fit::new(framebuffer.rect(), [640.0, 480.0]);
-    let triangle =
-        [vertex(knobs.point("a"), [0.0]), vertex(knobs.point("b"), [255.0]), vertex(knobs.point("c"), [0.0])];
+    let triangle = [
+        vertex(knobs.point("a"), [0.0]),
+        vertex(knobs.point("b"), [255.0]),
+        vertex(knobs.point("c"), [0.0]),
+    ];
     step_values(fit.triangle(triangle), Walk::default(), framebuffer.scissor(), |x, y, [value]| {
         framebuffer.set(x, y, Color::truncated([value; 3]));
     });
@@ -63,9 +74,21 @@ fn gray(framebuffer: &mut Framebuffer, knobs: &Knobs) {
 // ANCHOR_END: gray
 
 const RGB: &[Knob] = &[
-    Knob::point("a", [0.0, 0.0], "red goes with it, and along the edge from b to c no color changes"),
-    Knob::point("b", [240.0, 240.0], "green goes with it, and along the edge from a to c no color changes"),
-    Knob::point("c", [0.0, 480.0], "blue goes with it, and along the edge from a to b no color changes"),
+    Knob::point(
+        "a",
+        [0.0, 0.0],
+        "red goes with it, and along the edge from b to c no color changes",
+    ),
+    Knob::point(
+        "b",
+        [240.0, 240.0],
+        "green goes with it, and along the edge from a to c no color changes",
+    ),
+    Knob::point(
+        "c",
+        [0.0, 480.0],
+        "blue goes with it, and along the edge from a to b no color changes",
+    ),
 ];
 
 // ANCHOR: rgb
@@ -114,7 +137,11 @@ fn texture(framebuffer: &mut Framebuffer, knobs: &Knobs) {
 // ANCHOR_END: texture
 
 const WEIGHTS: &[Knob] = &[
-    Knob::point("a", [70.0, 50.0], "the lines of one weight of a stay parallel to the edge from b to c"),
+    Knob::point(
+        "a",
+        [70.0, 50.0],
+        "the lines of one weight of a stay parallel to the edge from b to c",
+    ),
     Knob::point(
         "b",
         [590.0, 130.0],
@@ -137,7 +164,8 @@ fn weights(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     for (x, y, areas) in coverage.all_pixels(framebuffer.scissor()) {
         let weights = areas.map(|area| area as f64 / coverage.twice_area as f64);
         let inside = coverage.covers(areas);
-        let on_tenth = weights.iter().any(|&weight| (weight * 10.0 - (weight * 10.0).round()).abs() < 0.025);
+        let on_tenth =
+            weights.iter().any(|&weight| (weight * 10.0 - (weight * 10.0).round()).abs() < 0.025);
         // Beyond an edge the weight of the opposite vertex is negative; dim, so that the triangle
         // stands out.
         let brightness = if inside == on_tenth {
@@ -222,23 +250,23 @@ fn areas(framebuffer: &mut Framebuffer, knobs: &Knobs) {
 // ANCHOR: spikes
 /// Values stepped past the ends of the edges.
 fn spikes(framebuffer: &mut Framebuffer) {
-    confetti(framebuffer, StepLimit::Overrun);
+    confetti(framebuffer, StepClamp::Overrun);
 }
 
 /// Values clamped along the edges.
-fn limited_edges(framebuffer: &mut Framebuffer) {
-    confetti(framebuffer, StepLimit::Edges);
+fn clamped_edges(framebuffer: &mut Framebuffer) {
+    confetti(framebuffer, StepClamp::Edges);
 }
 
 /// Values clamped along edges and rows.
-fn limited(framebuffer: &mut Framebuffer) {
-    confetti(framebuffer, StepLimit::Everywhere);
+fn clamped(framebuffer: &mut Framebuffer) {
+    confetti(framebuffer, StepClamp::Everywhere);
 }
 
 /// Small triangles on a screen of 80×60 pixels, each at another fraction of a pixel. All vertices
 /// have values in 0..=1, drawn as dark to bright blue; a value outside that range is drawn in
 /// orange.
-fn confetti(framebuffer: &mut Framebuffer, limit: StepLimit) {
+fn confetti(framebuffer: &mut Framebuffer, clamp: StepClamp) {
     picture::draw_enlarged(framebuffer, (80, 60), |screen| {
         for (column, row) in (0..6).flat_map(|row| (0..7).map(move |column| (column, row))) {
             let (i, j) = (f64::from(column), f64::from(row));
@@ -248,11 +276,12 @@ fn confetti(framebuffer: &mut Framebuffer, limit: StepLimit) {
                 vertex(dvec2(x + 8.4, y + 1.7), [0.0]),
                 vertex(dvec2(x + 1.8 + 0.7 * i, y + 7.6), [1.0]),
             ];
-            step_values(triangle, Walk { limit, ..Walk::default() }, screen.scissor(), |x, y, [value]| {
+            let walk = Walk { clamp, ..Walk::default() };
+            step_values(triangle, walk, screen.scissor(), |x, y, [value]| {
                 let is_in_range = (-1e-9..=1.0 + 1e-9).contains(&value);
-                let blue =
-                    Color::truncated([30.0 + 60.0 * value, 60.0 + 120.0 * value, 110.0 + 140.0 * value]);
-                screen.set(x, y, if is_in_range { blue } else { Color::rgb(255, 140, 0) });
+                let blue = [30.0 + 60.0 * value, 60.0 + 120.0 * value, 110.0 + 140.0 * value];
+                let orange = Color::rgb(255, 140, 0);
+                screen.set(x, y, if is_in_range { Color::truncated(blue) } else { orange });
             });
         }
     });

@@ -61,14 +61,14 @@ fn draw_cube(
     half: f64,
     color: Color,
 ) {
-    let corner = |i: usize, z: f64| center + half * dvec3(FRONT[i % 4].0, FRONT[i % 4].1, z);
+    let vertex = |i: usize, z: f64| center + half * dvec3(FRONT[i % 4].0, FRONT[i % 4].1, z);
     let dim = Color::truncated(color.to_f64().map(|channel| channel * 0.55));
     for i in 0..4 {
-        segment(framebuffer, project, corner(i, 1.0), corner(i + 1, 1.0), dim);
-        segment(framebuffer, project, corner(i, -1.0), corner(i, 1.0), dim);
+        segment(framebuffer, project, vertex(i, 1.0), vertex(i + 1, 1.0), dim);
+        segment(framebuffer, project, vertex(i, -1.0), vertex(i, 1.0), dim);
     }
     for i in 0..4 {
-        segment(framebuffer, project, corner(i, -1.0), corner(i + 1, -1.0), color);
+        segment(framebuffer, project, vertex(i, -1.0), vertex(i + 1, -1.0), color);
     }
 }
 
@@ -101,7 +101,12 @@ const ORTHOGRAPHIC: &[Knob] = &[ASIDE];
 // ANCHOR: cubes
 /// Five cubes, each farther away and more to the right than the one before it. The first is at a
 /// distance from the eye, which may have gone aside.
-fn cubes(framebuffer: &mut Framebuffer, project: impl Fn(DVec3) -> DVec4 + Copy, distance: f64, aside: f64) {
+fn cubes(
+    framebuffer: &mut Framebuffer,
+    project: impl Fn(DVec3) -> DVec4 + Copy,
+    distance: f64,
+    aside: f64,
+) {
     let colors = [
         Color::rgb(255, 90, 80),
         Color::rgb(255, 180, 60),
@@ -111,7 +116,8 @@ fn cubes(framebuffer: &mut Framebuffer, project: impl Fn(DVec3) -> DVec4 + Copy,
     ];
     for (i, color) in (0..).zip(colors) {
         let step = f64::from(i);
-        let center = dvec3(-230.0 + 115.0 * step - aside, -150.0 + 75.0 * step, distance + 260.0 * step);
+        let center =
+            dvec3(-230.0 + 115.0 * step - aside, -150.0 + 75.0 * step, distance + 260.0 * step);
         draw_cube(framebuffer, project, center, 70.0, color);
     }
 }
@@ -157,16 +163,34 @@ fn rails(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     // Sleepers at equal distances, and poles beside the track.
     for i in 0..120 {
         let z = first + 90.0 * f64::from(i);
-        segment(framebuffer, project, dvec3(-140.0, 0.0, z), dvec3(140.0, 0.0, z), Color::rgb(130, 85, 50));
+        segment(
+            framebuffer,
+            project,
+            dvec3(-140.0, 0.0, z),
+            dvec3(140.0, 0.0, z),
+            Color::rgb(130, 85, 50),
+        );
         if i % 4 == 2 {
-            segment(framebuffer, project, dvec3(260.0, 0.0, z), dvec3(260.0, 230.0, z), Color::gray(150));
+            segment(
+                framebuffer,
+                project,
+                dvec3(260.0, 0.0, z),
+                dvec3(260.0, 230.0, z),
+                Color::gray(150),
+            );
         }
     }
 
     // What is parallel to the track: two rails, and the wire along the poles.
     let [left, right, wire] = [(-100.0, 0.0), (100.0, 0.0), (260.0, 230.0)];
     for (x, y) in [left, right, wire] {
-        segment(framebuffer, project, dvec3(x, y, first), dvec3(x, y, last), Color::rgb(210, 220, 230));
+        segment(
+            framebuffer,
+            project,
+            dvec3(x, y, first),
+            dvec3(x, y, last),
+            Color::rgb(210, 220, 230),
+        );
     }
 
     // Points on the rails, each projected by itself.
@@ -197,8 +221,16 @@ fn near(framebuffer: &mut Framebuffer) {
 // ANCHOR_END: near
 
 const FROM_ABOVE: &[Knob] = &[
-    Knob::point("a", [170.0, 250.0], "go up with it, twice as far from the eye: its image is half as long"),
-    Knob::point("b", [450.0, 440.0], "go to the side with it: its image moves, and keeps its length"),
+    Knob::point(
+        "a",
+        [170.0, 250.0],
+        "go up with it, twice as far from the eye: its image is half as long",
+    ),
+    Knob::point(
+        "b",
+        [450.0, 440.0],
+        "go to the side with it: its image moves, and keeps its length",
+    ),
     Knob::number(
         "near",
         140.0,

@@ -72,7 +72,13 @@ const LINE: &[Knob] = &[
         "",
         "the line moves to the right: the points of the cut come and go in pairs of red and green",
     ),
-    Knob::number("slope", 0.05, [-0.2, 0.2], "", "the line tilts: each point of the cut stays on an edge"),
+    Knob::number(
+        "slope",
+        0.05,
+        [-0.2, 0.2],
+        "",
+        "the line tilts: each point of the cut stays on an edge",
+    ),
 ];
 
 /// The depth that the buffer is cleared to: larger than −1/z of anything drawn.
@@ -115,15 +121,15 @@ fn vertex([x, y, z]: [f64; 3], near: f64, uv: [f64; 2]) -> ClipVertex<2> {
 /// The book's scene: a wall that runs away from us, and one at the distance 55 (or another) that
 /// faces us.
 fn walls(framebuffer: &mut Framebuffer, distance: f64, volume: ClipVolume) {
-    let corner = |x: f64, y: f64, z: f64| vertex([x, y, z], 9.0, [x / 1280.0, y / 480.0]);
+    let at = |x: f64, y: f64, z: f64| vertex([x, y, z], 9.0, [x / 1280.0, y / 480.0]);
     let mut target = Target::like(framebuffer);
     target.clear(Color::BLACK, FAR_AWAY);
     let texture = Texture::book();
     for triangle in [
-        [corner(0.0, 0.0, 10.0), corner(0.0, 480.0, 10.0), corner(1280.0, 0.0, 100.0)],
-        [corner(1280.0, 0.0, 100.0), corner(0.0, 480.0, 10.0), corner(1280.0, 480.0, 100.0)],
-        [corner(0.0, 0.0, distance), corner(0.0, 480.0, distance), corner(1280.0, 0.0, distance)],
-        [corner(1280.0, 480.0, distance), corner(0.0, 480.0, distance), corner(1280.0, 0.0, distance)],
+        [at(0.0, 0.0, 10.0), at(0.0, 480.0, 10.0), at(1280.0, 0.0, 100.0)],
+        [at(1280.0, 0.0, 100.0), at(0.0, 480.0, 10.0), at(1280.0, 480.0, 100.0)],
+        [at(0.0, 0.0, distance), at(0.0, 480.0, distance), at(1280.0, 0.0, distance)],
+        [at(1280.0, 480.0, distance), at(0.0, 480.0, distance), at(1280.0, 0.0, distance)],
     ] {
         let texel = |uv| Color::truncated(texture.nearest(uv, AddressMode::Clamp));
         draw(&mut target, triangle, volume, |divided| divided.position.truncate(), texel);
@@ -145,9 +151,9 @@ fn near(framebuffer: &mut Framebuffer, knobs: &Knobs) {
 // ANCHOR: behind
 /// A checkered floor from 6 behind the eye, begin = −6, to 60 in front of it.
 fn floor(framebuffer: &mut Framebuffer, begin: f64, volume: ClipVolume) {
-    let corner = |x: f64, z: f64| vertex([x, -1.0, z], 300.0, [x / 2.0, z / 2.0]);
-    let [a, b] = [corner(-4.0, begin), corner(4.0, begin)];
-    let [c, d] = [corner(4.0, 60.0), corner(-4.0, 60.0)];
+    let at = |x: f64, z: f64| vertex([x, -1.0, z], 300.0, [x / 2.0, z / 2.0]);
+    let [a, b] = [at(-4.0, begin), at(4.0, begin)];
+    let [c, d] = [at(4.0, 60.0), at(-4.0, 60.0)];
     let texture = Texture::checkerboard(Color::rgb(60, 80, 110), Color::rgb(230, 225, 200));
     let texel = |uv| Color::truncated(texture.nearest(uv, AddressMode::Repeat));
 
@@ -175,7 +181,7 @@ fn in_front(framebuffer: &mut Framebuffer, knobs: &Knobs) {
 /// A polygon that a line crosses four times, and the part of it on one side.
 fn polygon(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     let (place, slope) = (knobs.number("place"), knobs.number("slope"));
-    let corners = [
+    let vertices = [
         (40.0, 90.0),
         (270.0, 60.0),
         (250.0, 210.0),
@@ -184,7 +190,8 @@ fn polygon(framebuffer: &mut Framebuffer, knobs: &Knobs) {
         (220.0, 420.0),
         (70.0, 380.0),
     ];
-    let outline = corners.map(|(x, y)| ClipVertex { position: dvec4(x, y, 0.0, 1.0), varyings: [] });
+    let outline =
+        vertices.map(|(x, y)| ClipVertex { position: dvec4(x, y, 0.0, 1.0), varyings: [] });
     // Kept is what lies left of the line x = place + slope · y: with w = 1 a plane of clip space is
     // a line.
     let plane = Plane::homogeneous(dvec4(-1.0, slope, 0.0, place));
@@ -193,7 +200,9 @@ fn polygon(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     let fit = Fit::new(framebuffer.rect(), [640.0, 480.0]);
     let at = |point: DVec4| fit.at(dvec2(point.x, point.y));
     let line = |framebuffer: &mut Framebuffer, a: DVec4, b: DVec4, color| {
-        dda(at(a), at(b), StepAxis::Longer, framebuffer.scissor(), |x, y| framebuffer.set(x, y, color));
+        dda(at(a), at(b), StepAxis::Longer, framebuffer.scissor(), |x, y| {
+            framebuffer.set(x, y, color);
+        });
     };
     let right = dvec4(330.0, 0.0, 0.0, 0.0);
     for shift in [DVec4::ZERO, right] {

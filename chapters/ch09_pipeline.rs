@@ -58,8 +58,16 @@ const BLENDING: &[Knob] = &[
         ],
         "which is drawn first, which last: on the left the overlaps change, on the right they do not",
     ),
-    Knob::choice("left", &["source-over", "additive", "opaque"], "how the left triangles are blended"),
-    Knob::choice("right", &["additive", "source-over", "opaque"], "how the right triangles are blended"),
+    Knob::choice(
+        "left",
+        &["source-over", "additive", "opaque"],
+        "how the left triangles are blended",
+    ),
+    Knob::choice(
+        "right",
+        &["additive", "source-over", "opaque"],
+        "how the right triangles are blended",
+    ),
 ];
 
 const VERTEX: Knob = Knob::point(
@@ -67,8 +75,11 @@ const VERTEX: Knob = Knob::point(
     [600.0, 430.0],
     "drag the small triangle's upper right vertex across the opposite edge: it runs the other way",
 );
-const CULL: Knob =
-    Knob::choice("cull", &["none", "back", "front"], "the same two triangles, and which are left out");
+const CULL: Knob = Knob::choice(
+    "cull",
+    &["none", "back", "front"],
+    "the same two triangles, and which are left out",
+);
 
 const FRAMES: &[Knob] = &[Knob::number(
     "step",
@@ -189,15 +200,21 @@ fn cull_mode(knobs: &Knobs) -> CullMode {
 // ANCHOR: culling
 /// The front of a triangle runs counter-clockwise; the back is culled.
 fn cull_ccw(canvas: &mut Canvas) {
-    let state =
-        RenderState { cull: CullMode::Back, front_face: Winding::CounterClockwise, ..RenderState::default() };
+    let state = RenderState {
+        cull: CullMode::Back,
+        front_face: Winding::CounterClockwise,
+        ..RenderState::default()
+    };
     textured_picture(canvas, with_clockwise_triangle(&canvas.knobs), &state);
 }
 
 /// Clockwise ones are kept.
 fn cull_cw(canvas: &mut Canvas) {
-    let state =
-        RenderState { cull: CullMode::Back, front_face: Winding::Clockwise, ..RenderState::default() };
+    let state = RenderState {
+        cull: CullMode::Back,
+        front_face: Winding::Clockwise,
+        ..RenderState::default()
+    };
     textured_picture(canvas, with_clockwise_triangle(&canvas.knobs), &state);
 }
 
@@ -247,9 +264,9 @@ fn five_frames(canvas: &mut Canvas, clear: bool) {
             canvas.clear(&state);
         }
         let (x, fade) = (30.0 + step * f64::from(frame), 50.0 * f64::from(frame));
-        let corners = vec![[x, 90.0], [x + 190.0, 150.0], [x + 60.0, 400.0]];
+        let vertices = vec![[x, 90.0], [x + 190.0, 150.0], [x + 60.0, 400.0]];
         let shader = Flat { color: [40.0 + fade, 90.0 + fade / 3.0, 240.0 - fade], opacity: 1.0 };
-        canvas.draw(&Mesh::unindexed(corners).expect("whole triangles"), &shader, &state);
+        canvas.draw(&Mesh::unindexed(vertices).expect("whole triangles"), &shader, &state);
     }
 }
 
@@ -302,7 +319,8 @@ impl Shader<1> for Relief {
     type Attributes = DVec3;
 
     fn vertex(&self, &view: &DVec3) -> ClipVertex<1> {
-        let frustum = Frustum { left: -4.0, right: 4.0, bottom: -3.0, top: 3.0, near: 6.0, far: 40.0 };
+        let frustum =
+            Frustum { left: -4.0, right: 4.0, bottom: -3.0, top: 3.0, near: 6.0, far: 40.0 };
         ClipVertex { position: frustum.project(view), varyings: [view.y] }
     }
 
@@ -322,9 +340,12 @@ fn indexed(canvas: &mut Canvas) {
         dvec3(2.4 * x, 4.5 / (1.0 + 0.35 * (x * x + z * z)) - 4.6, 13.0 + 2.0 * z)
     };
     let vertices = (0..side * side).map(|i| vertex(i % side, i / side)).collect();
-    let squares = (0..side - 1).flat_map(|row| (0..side - 1).map(move |column| row * side + column));
+    let squares =
+        (0..side - 1).flat_map(|row| (0..side - 1).map(move |column| row * side + column));
     let indices = squares
-        .flat_map(|corner| [corner, corner + 1, corner + side, corner + 1, corner + side + 1, corner + side])
+        .flat_map(|first| {
+            [first, first + 1, first + side, first + 1, first + side + 1, first + side]
+        })
         .collect();
 
     let state = RenderState { cull: cull_mode(&canvas.knobs), ..RenderState::default() };
@@ -368,36 +389,42 @@ fn blended(canvas: &mut Canvas) {
     let (opacity, order) = (canvas.knobs.number("opacity"), canvas.knobs.choice("order"));
     let [left, right] = ["left", "right"].map(|side| blend_mode(canvas.knobs.choice(side)));
     canvas.clear(&RenderState { clear_color: Color::gray(40), ..RenderState::default() });
-    let mut add = |corners: [[f64; 2]; 3], color, opacity, blend| {
+    let mut add = |vertices: [[f64; 2]; 3], color, opacity, blend| {
         let merge = Merge { blend, ..Merge::default() };
         let state = RenderState { merge, ..RenderState::default() };
         canvas.draw(
-            &Mesh::unindexed(corners.to_vec()).expect("whole triangles"),
+            &Mesh::unindexed(vertices.to_vec()).expect("whole triangles"),
             &Flat { color, opacity },
             &state,
         );
     };
 
     // The wall behind them: squares of 40 pixels.
-    for (column, row) in
-        (0..12).flat_map(|row| (0..16).map(move |column| (column, row))).filter(|(c, r)| (c + r) % 2 == 0)
+    for (column, row) in (0..12)
+        .flat_map(|row| (0..16).map(move |column| (column, row)))
+        .filter(|(c, r)| (c + r) % 2 == 0)
     {
         let (x, y) = (f64::from(column) * 40.0, f64::from(row) * 40.0);
-        for corners in
-            [[[x, y], [x + 39.0, y], [x, y + 39.0]], [[x + 39.0, y], [x + 39.0, y + 39.0], [x, y + 39.0]]]
-        {
-            add(corners, [75.0; 3], 1.0, Blend::Opaque);
+        for vertices in [
+            [[x, y], [x + 39.0, y], [x, y + 39.0]],
+            [[x + 39.0, y], [x + 39.0, y + 39.0], [x, y + 39.0]],
+        ] {
+            add(vertices, [75.0; 3], 1.0, Blend::Opaque);
         }
     }
     for (shift, blend) in [(0.0, left), (310.0, right)] {
         let at = |x: f64, y: f64| [x + shift, y];
         for name in order.split('-') {
-            let (corners, color) = match name {
-                "red" => ([at(40.0, 180.0), at(220.0, 180.0), at(130.0, 440.0)], [230.0, 60.0, 50.0]),
-                "green" => ([at(100.0, 60.0), at(290.0, 140.0), at(120.0, 320.0)], [60.0, 190.0, 80.0]),
+            let (vertices, color) = match name {
+                "red" => {
+                    ([at(40.0, 180.0), at(220.0, 180.0), at(130.0, 440.0)], [230.0, 60.0, 50.0])
+                }
+                "green" => {
+                    ([at(100.0, 60.0), at(290.0, 140.0), at(120.0, 320.0)], [60.0, 190.0, 80.0])
+                }
                 _ => ([at(70.0, 300.0), at(260.0, 220.0), at(280.0, 400.0)], [70.0, 110.0, 240.0]),
             };
-            add(corners, color, opacity, blend);
+            add(vertices, color, opacity, blend);
         }
     }
 }

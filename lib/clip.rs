@@ -66,7 +66,8 @@ impl Plane {
     /// w − z ≥ 0.
     pub const FAR: Self = Self::homogeneous(dvec4(0.0, 0.0, -1.0, 1.0));
 
-    /// The six planes of the canonical view volume, in the order of the book (section 8.3, Table 8-1).
+    /// The six planes of the canonical view volume, in the order of the book (section 8.3, Table
+    /// 8-1).
     pub const CANONICAL: [Self; 6] =
         [Self::LEFT, Self::RIGHT, Self::BOTTOM, Self::TOP, Self::NEAR, Self::FAR];
     /// The same where z runs from 0 to w.
@@ -86,12 +87,6 @@ impl Plane {
         Self { normal: dvec4(0.0, 0.0, 0.0, 1.0), offset: -distance }
     }
 
-    /// The normal, and what is added.
-    #[cfg(feature = "tiled")]
-    pub(crate) const fn coefficients(&self) -> ([f64; 4], f64) {
-        (self.normal.to_array(), self.offset)
-    }
-
     /// How far inside a point is; negative outside.
     #[must_use]
     #[inline]
@@ -100,6 +95,14 @@ impl Plane {
     }
 }
 // ANCHOR_END: planes
+
+#[cfg(feature = "tiled")]
+impl Plane {
+    /// The normal, and what is added.
+    pub(crate) const fn coefficients(&self) -> ([f64; 4], f64) {
+        (self.normal.to_array(), self.offset)
+    }
+}
 
 /// On which coordinates the distance to a plane is measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -182,7 +185,8 @@ pub const MAX_VERTICES: usize = 9;
 pub type Polygon<const N: usize> = ArrayVec<ClipVertex<N>, MAX_VERTICES>;
 
 // ANCHOR: clip_polygon
-/// The part of a polygon inside a plane, by the algorithm of Sutherland and Hodgman: clip space → clip space.
+/// The part of a polygon inside a plane, by the algorithm of Sutherland and Hodgman: clip space →
+/// clip space.
 ///
 /// ```text
 ///        inside │ outside        each edge, from its start to its end:
@@ -197,7 +201,8 @@ pub type Polygon<const N: usize> = ArrayVec<ClipVertex<N>, MAX_VERTICES>;
 /// edge get the same point to the last bit. Exact for convex polygons; of a concave one the parts
 /// stay connected along the plane.
 ///
-/// At most `CAP` vertices are kept; a convex polygon gains at most one. Source: book, sections 7.4 and 8.3.
+/// At most `CAP` vertices are kept; a convex polygon gains at most one. Source: book, sections 7.4
+/// and 8.3.
 #[must_use]
 pub fn clip_polygon<const N: usize, const CAP: usize>(
     polygon: &[ClipVertex<N>],
@@ -217,7 +222,8 @@ pub fn clip_polygon<const N: usize, const CAP: usize>(
     kept
 }
 
-/// What clipping finds on its way round a polygon: a vertex, by its number, or a cut of the edge between two.
+/// What clipping finds on its way round a polygon: a vertex, by its number, or a cut of the edge
+/// between two.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Clip {
     Inside(usize),
@@ -225,7 +231,8 @@ pub(crate) enum Clip {
     Cut { outer: usize, inner: usize, t: f64 },
 }
 
-/// Goes round a polygon: each vertex, and behind it the cut of the edge that begins there, if the plane cuts it.
+/// Goes round a polygon: each vertex, and behind it the cut of the edge that begins there, if the
+/// plane cuts it.
 #[inline]
 pub(crate) fn for_each_clip<const N: usize>(
     polygon: &[ClipVertex<N>],
@@ -425,7 +432,7 @@ mod tests {
     }
 
     #[test]
-    fn a_corner_is_cut_off() {
+    fn a_vertex_is_cut_off() {
         let vertex = |x, y, u| ClipVertex { position: dvec4(x, y, 0.0, 1.0), varyings: [u] };
         let clipped = clip_triangle(
             [vertex(0.0, 0.0, 0.0), vertex(2.0, 0.0, 8.0), vertex(0.0, 0.5, 0.0)],

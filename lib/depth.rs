@@ -110,6 +110,49 @@ pub fn w_from_z(z: f64, near: f64, far: f64) -> f64 {
     near * far / (far - z * (far - near))
 }
 
+// ANCHOR: reversed
+/// The same depth the other way round: 1 at the near plane and 0 at the far plane, from the
+/// distance w. Nearer is larger, so the test is [`DepthTest::Greater`].
+///
+/// n (f − w) / ((f − n) w), which is 1 − [`z_from_w`], computed without subtracting from 1: that
+/// would round off what is small far away. Source: Reed, *Depth precision visualized*, 2015.
+#[must_use]
+pub fn reversed_z_from_w(w: f64, near: f64, far: f64) -> f64 {
+    near * (far - w) / ((far - near) * w)
+}
+
+/// What numbers a buffer of hardware can hold for depths of 0..=1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DepthFormat {
+    /// Whole multiples of 1 / (2²⁴ − 1): the same step everywhere.
+    Unorm24,
+    /// `f32`: 24 digits wherever they begin, so the step is finest near 0.
+    Float32,
+}
+
+impl DepthFormat {
+    const UNORM_MAX: f64 = 16_777_215.0;
+
+    /// The number of this format that is nearest to a depth of 0..=1.
+    #[must_use]
+    pub fn stored(self, depth: f64) -> f64 {
+        match self {
+            Self::Unorm24 => (depth * Self::UNORM_MAX).round() / Self::UNORM_MAX,
+            Self::Float32 => f64::from(depth as f32),
+        }
+    }
+    // ANCHOR_END: reversed
+
+    /// How far the number that is stored for a depth of 0..1 is from the next larger one.
+    #[must_use]
+    pub fn step(self, depth: f64) -> f64 {
+        match self {
+            Self::Unorm24 => 1.0 / Self::UNORM_MAX,
+            Self::Float32 => f64::from((depth as f32).next_up()) - f64::from(depth as f32),
+        }
+    }
+}
+
 /// A depth for each pixel, of double precision unless said otherwise.
 #[derive(Clone, Debug)]
 pub struct DepthBuffer<D = f64> {
@@ -213,7 +256,24 @@ mod tests {
         assert!(!buffer.test_and_set(2, 0, 0.1, DepthTest::Less), "outside");
     }
 
+    #[test]
+    fn what_a_format_can_hold() {
+        let unorm = DepthFormat::Unorm24;
+        assert_eq!([0.0, 1.0].map(|depth| unorm.stored(depth)), [0.0, 1.0]);
+        assert_eq!(unorm.stored(0.4 * unorm.step(0.0)), 0.0);
+        assert_eq!(unorm.stored(0.6 * unorm.step(0.0)), unorm.step(0.0));
+        let float = DepthFormat::Float32;
+        assert_eq!(float.stored(0.1), f64::from(0.1_f32));
+        assert_eq!([0.25, 0.4, 0.5, 0.9].map(|depth| float.step(depth) * 33_554_432.0), [1.0, 1.0, 2.0, 2.0]);
+    }
+
     proptest! {
+        #[test]
+        fn reversed_is_one_minus_ordinary(w in 1.0..20.0) {
+            let (ordinary, reversed) = (z_from_w(w, 1.0, 20.0), reversed_z_from_w(w, 1.0, 20.0));
+            prop_assert!((ordinary + reversed - 1.0).abs() < 1e-12);
+        }
+
         #[test]
         fn conversion_between_w_and_z(w in 1.0..10.0) {
             let z = z_from_w(w, 1.0, 10.0);

@@ -16,7 +16,7 @@ use std::array::from_fn;
 use glam::DVec2;
 
 use crate::area::twice_signed_area;
-use crate::payload::{Payload, StepLimit, Walk};
+use crate::payload::{Payload, StepClamp, Walk};
 use crate::real::{Mask, Real};
 use crate::rect::Rect;
 use crate::scanline::{Edge, Half, Split, split};
@@ -120,7 +120,7 @@ fn step_values_in<const N: usize>(
     let [lower, upper] = split.attach(values, linear);
     for (half, values) in [(split.lower, lower), (split.upper, upper)] {
         half.step(&values, walk, scissor, |span, [start, end]| {
-            span.step(start, end, walk.limit, |x, values| emit(x, span.y, values));
+            span.step(start, end, walk.clamp, |x, values| emit(x, span.y, values));
         });
     }
 }
@@ -164,9 +164,12 @@ impl Interpolation {
         t: R,
     ) -> Projected<R, N> {
         match self {
-            Self::Affine => Projected { w: (b.w - a.w) * t + a.w, values: linear(a.values, b.values, t) },
+            Self::Affine => {
+                let w = (b.w - a.w) * t + a.w;
+                Projected { w, values: linear(a.values, b.values, t) }
+            }
             Self::PerspectiveCorrect => perspective_correct(a, b, t),
-            Self::Reciprocal => reciprocal(a, b, t),
+            Self::Reciprocal => reciprocal([a, b], t),
         }
     }
 }
@@ -217,7 +220,7 @@ fn perspective_correct<R: Real, const N: usize>(
 // ANCHOR: reciprocal
 /// The same in the form that most texts give (book, section 5.5.4): interpolate 1/w and V/w
 /// linearly, then divide.
-fn reciprocal<R: Real, const N: usize>(a: Projected<R, N>, b: Projected<R, N>, t: R) -> Projected<R, N> {
+fn reciprocal<R: Real, const N: usize>([a, b]: [Projected<R, N>; 2], t: R) -> Projected<R, N> {
     let one = R::of(1.0);
     let one_over_w = one / a.w + (one / b.w - one / a.w) * t;
     let value = |va: R, vb: R| (va / a.w + (vb / b.w - va / a.w) * t) / one_over_w;
@@ -305,13 +308,15 @@ fn step_parameter_in<const N: usize>(
             let [start, end] = ends_of_row(&points, [left.t, right.t], interpolation);
             // Along the row: t′ goes from 0 to 1 again.
             let [from, to] = EdgeParameter::along_row([left, right]);
-            span.step(from, to, walk.limit, |x, here| {
+            span.step(from, to, walk.clamp, |x, here| {
                 emit(x, span.y, between(start, end, here.t), here.depth);
             });
         });
     }
 }
+// ANCHOR_END: step_parameter
 
+// ANCHOR: ends_of_row
 /// The depths at the ends of the halves' edges.
 #[inline]
 pub(crate) fn attach_depths(split: &Split, depths: [f64; 3]) -> [Half<f64>; 2] {
@@ -330,7 +335,7 @@ pub(crate) fn ends_of_row<const N: usize>(
         interpolation.between(right.start, right.end, t_right),
     ]
 }
-// ANCHOR_END: step_parameter
+// ANCHOR_END: ends_of_row
 
 /// What is stepped along edges and rows: t′, and a depth, which changes linearly on the screen.
 ///
@@ -371,12 +376,12 @@ impl Payload for EdgeParameter {
     }
 
     #[inline]
-    fn clamped(self, start: Self, end: Self, limit: StepLimit) -> Self {
-        let depth = match limit {
-            StepLimit::Everywhere => self.depth.clamped(start.depth, end.depth, limit),
-            StepLimit::Edges | StepLimit::Overrun => self.depth,
+    fn clamped(self, start: Self, end: Self, clamp: StepClamp) -> Self {
+        let depth = match clamp {
+            StepClamp::Everywhere => self.depth.clamped(start.depth, end.depth, clamp),
+            StepClamp::Edges | StepClamp::Overrun => self.depth,
         };
-        Self { t: self.t.clamped(start.t, end.t, limit), depth }
+        Self { t: self.t.clamped(start.t, end.t, clamp), depth }
     }
 }
 
@@ -486,7 +491,7 @@ mod tests {
             t in prop::array::uniform3(point()), z in prop::array::uniform3(-1.0..1.0), w in prop::array::uniform3(0.5..9.0),
         ) {
             let triangle = from_fn(|i| ScreenVertex { position: t[i], varyings: (Projected { w: w[i], values: [] }, z[i]) });
-            let walk = Walk { limit: StepLimit::Everywhere, ..Walk::default() };
+            let walk = Walk { clamp: StepClamp::Everywhere, ..Walk::default() };
             let (low, high) = (z.iter().copied().fold(1.0, f64::min), z.iter().copied().fold(-1.0, f64::max));
             step_parameter_and_depth(triangle, Interpolation::PerspectiveCorrect, walk, SCISSOR, |x, y, _, depth| {
                 assert!(depth >= low - 1e-9 && depth <= high + 1e-9, "{depth} at ({x}, {y}) is not in {low}..{high}");
@@ -565,8 +570,8 @@ mod tests {
         let odd = [0.0, -1.0, 1e30, -1e30, f64::NAN, f64::INFINITY, f64::MAX];
         for (&x, &w) in odd.iter().flat_map(|x| odd.iter().map(move |w| (x, w))) {
             let triangle = [dvec2(x, 3.0), dvec2(50.0, x), dvec2(10.0, 40.0)];
-            for limit in [StepLimit::Overrun, StepLimit::Edges, StepLimit::Everywhere] {
-                let walk = Walk { limit, ..Walk::default() };
+            for clamp in [StepClamp::Overrun, StepClamp::Edges, StepClamp::Everywhere] {
+                let walk = Walk { clamp, ..Walk::default() };
                 let mut count = 0;
                 step_values(vertices(triangle, [[w]; 3]), walk, SCISSOR, |_, _, _| count += 1);
                 for interpolation in

@@ -2,7 +2,7 @@
 //!
 //! # A first picture
 //!
-//! A cube with a color for each corner, in perspective, with a depth buffer:
+//! A cube with a color for each vertex, in perspective, with a depth buffer:
 //!
 //! ```
 //! use rasterbook::exact::Exact;
@@ -11,20 +11,20 @@
 //! use rasterbook::{ClipVertex, LoadOp, Mesh, RenderState, Silent, Target, draw, shader};
 //!
 //! // Eight vertices, and two triangles for each of the six sides.
-//! let corner = |i: u32| dvec3((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64);
+//! let vertex = |i: u32| dvec3((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64);
 //! let sides = [[0, 1, 3, 2], [5, 4, 6, 7], [4, 0, 2, 6], [1, 5, 7, 3], [2, 3, 7, 6], [4, 5, 1, 0]];
 //! let triangles = sides.iter().flat_map(|&[a, b, c, d]| [a, b, c, a, c, d]).collect();
-//! let cube = Mesh::indexed((0..8).map(corner).collect(), triangles)?;
+//! let cube = Mesh::indexed((0..8).map(vertex).collect(), triangles)?;
 //!
 //! // Turned about its middle, and seen from the origin: +x is right, +y is up, +z is away from us.
 //! let camera = Frustum::from_field_of_view(0.7, 4.0 / 3.0, 1.0, 10.0);
 //! let turn = about(DVec3::splat(0.5), rotate_z_to_y(0.6) * rotate_x_to_z(0.7));
 //! let colored = shader::from_fn(
-//!     |&corner: &DVec3| {
-//!         let view = turn.transform_point3(corner) + dvec3(-0.5, -0.5, 3.0);
-//!         ClipVertex { position: camera.project(view), varyings: corner.to_array() }
+//!     |&vertex: &DVec3| {
+//!         let view = turn.transform_point3(vertex) + dvec3(-0.5, -0.5, 3.0);
+//!         ClipVertex { position: camera.project(view), varyings: vertex.to_array() }
 //!     },
-//!     |corner: [f64; 3]| corner.map(|channel| 55.0 + 200.0 * channel),
+//!     |color: [f64; 3]| color.map(|channel| 55.0 + 200.0 * channel),
 //! );
 //!
 //! let mut target = Target::new(640, 480);

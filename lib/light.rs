@@ -54,7 +54,8 @@ pub fn reflect<R: Real>(normal: Vector<R>, to_light: Vector<R>) -> Vector<R> {
 }
 
 // ANCHOR: lambert
-/// Diffuse light: max(0, n·l), the cosine of the angle at which the light arrives. Book, section 11.1.
+/// Diffuse light: max(0, n·l), the cosine of the angle at which the light arrives. Book, section
+/// 11.1.
 ///
 /// ```text
 ///    light straight from above: much of it       at an angle: the same light on more surface
@@ -77,21 +78,28 @@ pub fn attenuation<R: Real>(distance: R) -> R {
 }
 
 // ANCHOR: specular
-/// Phong's highlight: max(0, r·v)^p, r the reflected light, v the direction to the eye. Large exponents make it small.
+/// Phong's highlight: max(0, r·v)^p, r the reflected light, v the direction to the eye. Large
+/// exponents make it small.
 ///
-/// Where the angle between r and v passes 90° the highlight is cut off, which shows at small exponents. Source: fourth
-/// note, Phong model.
+/// Where the angle between r and v passes 90° the highlight is cut off, which shows at small
+/// exponents. Source: fourth note, Phong model.
 #[must_use]
 #[inline]
-pub fn phong<R: Real>(normal: Vector<R>, to_light: Vector<R>, to_eye: Vector<R>, exponent: f64) -> R {
+pub fn phong<R>(normal: Vector<R>, to_light: Vector<R>, to_eye: Vector<R>, exponent: f64) -> R
+where
+    R: Real,
+{
     power(dot(reflect(normal, to_light), to_eye).max(R::of(0.0)), exponent)
 }
 
-/// The highlight of Blinn–Phong: max(0, n·h)^p, h half-way between light and eye. It has no cut-off while both are above
-/// the surface. Source: fourth note, Blinn–Phong model.
+/// The highlight of Blinn–Phong: max(0, n·h)^p, h half-way between light and eye. It has no cut-off
+/// while both are above the surface. Source: fourth note, Blinn–Phong model.
 #[must_use]
 #[inline]
-pub fn blinn_phong<R: Real>(normal: Vector<R>, to_light: Vector<R>, to_eye: Vector<R>, exponent: f64) -> R {
+pub fn blinn_phong<R>(normal: Vector<R>, to_light: Vector<R>, to_eye: Vector<R>, exponent: f64) -> R
+where
+    R: Real,
+{
     let half = normalize(from_fn(|i| to_light[i] + to_eye[i]));
     power(dot(normal, half).max(R::of(0.0)), exponent)
 }
@@ -122,8 +130,8 @@ fn power<R: Real>(base: R, exponent: f64) -> R {
 }
 
 // ANCHOR: mapped_normal
-/// The normal that a normal map gives to a point of a surface: the texel's channels, 0..=255, are x, y and z of a vector
-/// in the surface's own *tangent space*, −1..1.
+/// The normal that a normal map gives to a point of a surface: the texel's channels, 0..=255, are
+/// x, y and z of a vector in the surface's own *tangent space*, −1..1.
 ///
 /// ```text
 ///        n (blue)          x runs along t, where u grows, y along b, where v grows, and
@@ -134,7 +142,8 @@ fn power<R: Real>(base: R, exponent: f64) -> R {
 ///
 /// No texel leaves it exactly: 0 would be 127.5, and 128 tilts the normal by 0.3°.
 ///
-/// The axes are of length 1 and in any space; the normal is in the same. Source: first note (a normal map on a quad).
+/// The axes are of length 1 and in any space; the normal is in the same. Source: first note (a
+/// normal map on a quad).
 #[must_use]
 pub fn mapped_normal<R: Real>(texel: Vector<R>, [t, b, n]: [Vector<R>; 3]) -> Vector<R> {
     let [x, y, z] = texel.map(|channel| channel / R::of(127.5) - R::of(1.0));
@@ -149,7 +158,8 @@ pub enum Light {
     /// From far away: everywhere from the same direction (of length 1, towards the light), equally
     /// bright.
     Directional([f64; 3]),
-    /// From a point, of some intensity: at the distance r so much of it arrives as [`attenuation`] says, I / r².
+    /// From a point, of some intensity: at the distance r so much of it arrives as [`attenuation`]
+    /// says, I / r².
     Point {
         /// Where it is.
         position: [f64; 3],
@@ -167,7 +177,7 @@ impl Light {
             Self::Point { position, intensity } => {
                 let offset = from_fn(|i| R::of(position[i]) - place[i]);
                 let distance = dot(offset, offset).sqrt();
-                (offset.map(|component| component / distance), R::of(intensity) * attenuation(distance))
+                (offset.map(|it| it / distance), R::of(intensity) * attenuation(distance))
             }
         }
     }
@@ -205,8 +215,8 @@ impl Material {
     // ANCHOR: shade
     /// The color (0..=255) of a surface of color `surface` under white light of some intensity.
     ///
-    /// As in the note, nothing keeps a broad highlight from reaching a little beyond where the surface turns away from
-    /// the light.
+    /// As in the note, nothing keeps a broad highlight from reaching a little beyond where the
+    /// surface turns away from the light.
     #[must_use]
     pub fn shade<R: Real>(
         &self,

@@ -92,9 +92,9 @@ impl Line {
     }
 
     // ANCHOR: dda
-    /// Emits the pixels of the line, from left to right or, if it is y-major, from bottom to top; `visible` are the columns
-    /// or the rows that can be seen. With each pixel the running coordinate and the other one, before they are rounded
-    /// down.
+    /// Emits the pixels of the line, from left to right or, if it is y-major, from bottom to top;
+    /// `visible` are the columns or the rows that can be seen. With each pixel the running
+    /// coordinate and the other one, before they are rounded down.
     pub(crate) fn step(&self, visible: Range<i32>, mut emit: impl FnMut(Pixel, [f64; 2])) {
         let Self { a, b, .. } = *self;
         if self.is_x_major() {

@@ -120,7 +120,7 @@ pub fn merge<R: Scalar>(
     let color = match (options.blend, shaded.color) {
         // What was there does not show.
         (Blend::Opaque, Paint::Texel(texel)) => texel,
-        (Blend::Opaque, Paint::Channels([red, green, blue, _])) => rounding.color([red, green, blue]),
+        (Blend::Opaque, Paint::Channels([r, g, b, _])) => rounding.color([r, g, b]),
         (blend, paint) => {
             let there = R::channels(target.color.get(x, y).unwrap_or_default());
             rounding.color(blend.apply(paint.channels(), there))

@@ -45,7 +45,7 @@ pub enum MeshError {
 impl fmt::Display for MeshError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NotTriangles { count } => write!(f, "{count} corners do not make whole triangles"),
+            Self::NotTriangles { count } => write!(f, "{count} vertices do not make whole triangles"),
             Self::IndexOutOfRange { index, vertices } => {
                 write!(f, "index {index}, but there are {vertices} vertices")
             }
@@ -113,8 +113,8 @@ impl<A> Mesh<A> {
         match &self.indices {
             None => [first, first + 1, first + 2],
             Some(indices) => {
-                let corners = &indices[first..first + 3];
-                [corners[0] as usize, corners[1] as usize, corners[2] as usize]
+                let triangle = &indices[first..first + 3];
+                [triangle[0] as usize, triangle[1] as usize, triangle[2] as usize]
             }
         }
     }

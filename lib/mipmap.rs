@@ -47,8 +47,8 @@ type Level = [f64; 3];
 
 impl MipMaps {
     // ANCHOR: mip_maps
-    /// Makes the copies: each texel is the mean of four of the level before (of two where that is one texel wide or
-    /// high; an odd last column or row is left out).
+    /// Makes the copies: each texel is the mean of four of the level before (of two where that is
+    /// one texel wide or high; an odd last column or row is left out).
     ///
     /// # Panics
     /// If the texture has more than 2²³ rows: those of all levels are counted in single precision.
@@ -79,15 +79,16 @@ impl MipMaps {
     }
 
     // ANCHOR: level_of_detail
-    /// Which level fits: λ = log₂ ρ, where ρ is how far (u, v) moves, in texels, from a pixel to its
-    /// right or to its upper neighbor, whichever is farther. Clamped to the levels that there are.
+    /// Which level fits: λ = log₂ ρ, where ρ is how far (u, v) moves, in texels, from a pixel to
+    /// its right or to its upper neighbor, whichever is farther. Clamped to the levels that there
+    /// are.
     ///
     /// ```text
-    ///    a pixel, seen on the texture:
-    ///                                  ρ = max( |∂(u·width, v·height)/∂x|, |∂(u·width, v·height)/∂y| )
+    ///    a pixel on the texture:
+    ///                             ρ = max( |∂(u·width, v·height)/∂x|, |∂(u·width, v·height)/∂y| )
     ///        ╱╲   ∂/∂y
-    ///       ╱  ╲                       λ = 0: a texel a pixel, or larger texels
-    ///      ╲  ╱                        λ = 1: two texels a pixel: level 1
+    ///       ╱  ╲                  λ = 0: a texel a pixel, or larger texels
+    ///      ╲  ╱                   λ = 1: two texels a pixel: level 1
     ///       ╲╱   ∂/∂x
     /// ```
     ///

@@ -7,14 +7,14 @@
 //! ```
 //! use glam::dvec2;
 //! use rasterbook::Rect;
-//! use rasterbook::payload::StepLimit;
+//! use rasterbook::payload::StepClamp;
 //! use rasterbook::scanline::{EdgeWalk, spans};
 //!
 //! // Along a row of five pixels from 0 to 1.
 //! let triangle = [dvec2(0.0, 0.0), dvec2(4.0, 0.0), dvec2(0.0, 1.0)];
 //! let mut values = Vec::new();
 //! spans(triangle, EdgeWalk::Clamped, Rect::sized(8, 8), |span| {
-//!     span.step(0.0, 1.0, StepLimit::Edges, |_, value| values.push(value));
+//!     span.step(0.0, 1.0, StepClamp::Edges, |_, value| values.push(value));
 //! });
 //! assert_eq!(values, [0.0, 0.25, 0.5, 0.75, 1.0]);
 //! ```
@@ -26,12 +26,12 @@ use crate::scanline::{Edge, EdgeWalk, Half, Span, Split, halves};
 ///
 /// A row stands for the height trunc(y), an edge ends at its own height: the last step may go beyond it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum StepLimit {
+pub enum StepClamp {
     /// Nothing is clamped, a mistake.
     ///
     /// - Cause: the last row of an edge lies up to one pixel beyond the edge's end, and so does the last pixel of a row.
     /// - Artefact: values outside the range of the vertices; in a texture, texels from beyond the triangle ("spikes").
-    /// - Remedy: [`StepLimit::Edges`] as in the book (chapter 11), or [`StepLimit::Everywhere`].
+    /// - Remedy: [`StepClamp::Edges`] as in the book (chapter 11), or [`StepClamp::Everywhere`].
     Overrun,
     /// Clamped along the two edges after each row, not along the row: the book's remedy. The last pixel of a row may
     /// still pass the end, and a depth that is stepped beside t is not clamped.
@@ -47,7 +47,7 @@ pub struct Walk {
     /// Whether x is kept between the ends of its edge.
     pub edges: EdgeWalk,
     /// Whether a payload is kept between its values at the ends.
-    pub limit: StepLimit,
+    pub clamp: StepClamp,
 }
 
 /// Something that changes by equal steps from one end of an edge, or of a row, to the other.
@@ -58,9 +58,9 @@ pub trait Payload: Copy {
     /// This value after `count` steps.
     #[must_use]
     fn stepped(self, slope: Self, count: f64) -> Self;
-    /// This value, but not beyond `end` as seen from `start`; `limit` is not [`StepLimit::Overrun`].
+    /// This value, but not beyond `end` as seen from `start`; `clamp` is not [`StepClamp::Overrun`].
     #[must_use]
-    fn clamped(self, start: Self, end: Self, limit: StepLimit) -> Self;
+    fn clamped(self, start: Self, end: Self, clamp: StepClamp) -> Self;
 }
 
 /// One number: a value, or the parameter t of chapter 5.
@@ -76,7 +76,7 @@ impl Payload for f64 {
     }
 
     #[inline]
-    fn clamped(self, start: Self, end: Self, _: StepLimit) -> Self {
+    fn clamped(self, start: Self, end: Self, _: StepClamp) -> Self {
         if end > start {
             self.min(end)
         } else if end < start {
@@ -100,8 +100,8 @@ impl<P: Payload, const N: usize> Payload for [P; N] {
     }
 
     #[inline]
-    fn clamped(self, start: Self, end: Self, limit: StepLimit) -> Self {
-        std::array::from_fn(|i| self[i].clamped(start[i], end[i], limit))
+    fn clamped(self, start: Self, end: Self, clamp: StepClamp) -> Self {
+        std::array::from_fn(|i| self[i].clamped(start[i], end[i], clamp))
     }
 }
 
@@ -135,13 +135,15 @@ impl Half {
         let mut left = Stepped::new(&self.left, &carried.left);
         let mut right = Stepped::new(&self.right, &carried.right);
         self.walk(walk.edges, scissor, |span| {
-            left.step_to(span.y, walk.limit);
-            right.step_to(span.y, walk.limit);
+            left.step_to(span.y, walk.clamp);
+            right.step_to(span.y, walk.clamp);
             emit(span, [left.value, right.value]);
         });
     }
 }
+// ANCHOR_END: step
 
+// ANCHOR: stepped
 /// A payload on its way up one edge of a half.
 struct Stepped<P> {
     /// The row that it has reached.
@@ -158,35 +160,34 @@ impl<P: Payload> Stepped<P> {
         Self { y: edge.start.y.trunc(), value: ends.start, slope, ends: *ends }
     }
 
-    /// Goes up to a row, and does not pass the end of the edge if that is the limit.
+    /// Goes up to a row, and does not pass the end of the edge, unless nothing is clamped.
     #[inline]
-    fn step_to(&mut self, y: i32, limit: StepLimit) {
+    fn step_to(&mut self, y: i32, clamp: StepClamp) {
         let rows = f64::from(y) - self.y;
         if rows > 0.0 {
             self.y = f64::from(y);
             self.value = self.value.stepped(self.slope, rows);
-            if limit != StepLimit::Overrun {
-                self.value = self.value.clamped(self.ends.start, self.ends.end, limit);
+            if clamp != StepClamp::Overrun {
+                self.value = self.value.clamped(self.ends.start, self.ends.end, clamp);
             }
         }
     }
 }
-
-// ANCHOR_END: step
+// ANCHOR_END: stepped
 
 impl Span {
     // ANCHOR: span_step
     /// Steps a payload along the row, from its value at the start to its value at the end, a pixel
     /// at a time.
     #[inline]
-    pub fn step<P: Payload>(&self, from: P, to: P, limit: StepLimit, mut emit: impl FnMut(i32, P)) {
+    pub fn step<P: Payload>(&self, from: P, to: P, clamp: StepClamp, mut emit: impl FnMut(i32, P)) {
         let columns = self.columns();
         let slope = P::slope(from, to, self.end - self.start);
         let skipped = f64::from(columns.start) - self.start.trunc();
         let mut value = if skipped > 0.0 { from.stepped(slope, skipped) } else { from };
         for x in columns {
-            if limit == StepLimit::Everywhere {
-                value = value.clamped(from, to, limit);
+            if clamp == StepClamp::Everywhere {
+                value = value.clamped(from, to, clamp);
             }
             emit(x, value);
             value = value.stepped(slope, 1.0);
@@ -212,12 +213,12 @@ mod tests {
             triangle in prop::array::uniform3(point()), values in prop::array::uniform3(-5.0..5.0),
         ) {
             let (low, high) = (values.iter().copied().fold(f64::MAX, f64::min), values.iter().copied().fold(f64::MIN, f64::max));
-            let walk = Walk { limit: StepLimit::Everywhere, ..Walk::default() };
+            let walk = Walk { clamp: StepClamp::Everywhere, ..Walk::default() };
             let Some(split) = split(triangle) else { return Ok(()) };
             let carried = split.attach(values, |a, b, t| (b - a) * t + a);
             for (half, carried) in [split.lower, split.upper].iter().zip(&carried) {
                 half.step(carried, walk, Rect::sized(40, 30), |span, [start, end]| {
-                    span.step(start, end, walk.limit, |_, value| {
+                    span.step(start, end, walk.clamp, |_, value| {
                         assert!(value >= low - 1e-9 && value <= high + 1e-9, "{value} is not in {low}..{high}");
                     });
                 });

@@ -40,7 +40,8 @@ use crate::target::Target;
 // ANCHOR: draw
 /// Draws a mesh into a target.
 ///
-/// Fragments reach a pixel in the order of the triangles in the mesh; of a clipped triangle, in the order of its fan.
+/// Fragments reach a pixel in the order of the triangles in the mesh; of a clipped triangle, in the
+/// order of its fan.
 ///
 /// # Panics
 /// If a pixel of the target has no depth: its plane of depths is smaller than that of colors.
@@ -57,10 +58,10 @@ pub fn draw<S: Shader<N>, Z: Rasterizer, P: Probe + ?Sized, const N: usize>(
     }
 
     // 1. Vertex shading: every vertex once, however many triangles share it.
-    let shaded: Vec<ClipVertex<N>> = mesh.vertices().iter().map(|vertex| shader.vertex(vertex)).collect();
+    let shaded: Vec<ClipVertex<N>> = mesh.vertices().iter().map(|it| shader.vertex(it)).collect();
 
     // 2. Primitive assembly: three vertices make a triangle.
-    let triangles = mesh.triangles().map(|triangle| (triangle, triangle.map(|index| shaded[index])));
+    let triangles = mesh.triangles().map(|triangle| (triangle, triangle.map(|i| shaded[i])));
 
     // 3. Clipping, in clip space, where edges and values are still straight.
     let planes = state.clip_volume.planes(state.depth_range);

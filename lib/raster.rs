@@ -118,7 +118,7 @@ fn draw_triangle<S: Shader<N>, P: Probe + ?Sized, const N: usize>(
     let varyings = TriangleVaryings::new(triangle, state.interpolation);
     let gradients = weight_gradients(on_screen.map(|vertex| vertex.position));
 
-    // 7. Rasterization: which pixels, and which values. Each fragment goes through the stages 8 to 10.
+    // 7. Rasterization: which pixels, and which values. Each fragment goes through stages 8 to 10.
     let mut stages = FragmentStages { shader, state, rounding: Rounding::Truncate, target, probe };
     step_parameter_and_depth(on_screen, state.interpolation, state.walk, scissor, |x, y, point, z| {
         stages.draw((x, y), point, z, |point| varyings.derivatives(point, gradients));

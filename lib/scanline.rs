@@ -41,11 +41,16 @@ pub enum EdgeWalk {
 ///
 /// Nothing for a triangle without area or with coordinates that are not finite. Source: book,
 /// section 2.2.
-pub fn spans(triangle: [DVec2; 3], edges: EdgeWalk, scissor: impl Into<Scissor>, mut emit: impl FnMut(Span)) {
+pub fn spans(
+    triangle: [DVec2; 3],
+    edge_walk: EdgeWalk,
+    scissor: impl Into<Scissor>,
+    mut emit: impl FnMut(Span),
+) {
     let scissor = scissor.into();
     if let Some(Split { lower, upper, .. }) = split(triangle) {
-        lower.spans(edges, scissor.clone(), &mut emit);
-        upper.spans(edges, scissor, &mut emit);
+        lower.spans(edge_walk, scissor.clone(), &mut emit);
+        upper.spans(edge_walk, scissor, &mut emit);
     }
 }
 // ANCHOR_END: spans

@@ -34,7 +34,7 @@ fn light_of(c: f64) -> f64 {
 
 /// The light of each of the 256 values of a channel. A table, since a power costs as much as a
 /// hundred additions.
-static LIGHT: LazyLock<[f64; 256]> = LazyLock::new(|| from_fn(|value| light_of(value as f64 / 255.0)));
+static LIGHT: LazyLock<[f64; 256]> = LazyLock::new(|| from_fn(|it| light_of(it as f64 / 255.0)));
 
 /// The light half-way, in encoded values, between each value and the next: from there on the next
 /// one is nearer.
@@ -44,7 +44,7 @@ static BORDERS: LazyLock<[f64; 255]> =
 /// For each of 4096 equal steps of light, the value of its darkest light. No step holds more than
 /// one border, so that the value of any light in it is this one or the next.
 static STEPS: LazyLock<[u8; 4096]> =
-    LazyLock::new(|| from_fn(|step| BORDERS.partition_point(|&border| border <= step as f64 / 4096.0) as u8));
+    LazyLock::new(|| from_fn(|i| BORDERS.partition_point(|&it| it <= i as f64 / 4096.0) as u8));
 // ANCHOR_END: tables
 
 /// Stored channels, whole numbers in 0..=255 → light in 0..=1. Fractions are cut off, values outside clamped.

@@ -88,8 +88,9 @@ impl Target {
     }
 
     // ANCHOR: fill
-    /// Fills a triangle where it is not behind what has been drawn (chapters 7 and 8; the pipeline of chapter 9 has more
-    /// options). Screen space; the depth of a vertex, beside its ω and values, changes linearly on the screen.
+    /// Fills a triangle where it is not behind what has been drawn (chapters 7 and 8; the pipeline
+    /// of chapter 9 has more options). Screen space; the depth of a vertex, beside its ω and
+    /// values, changes linearly on the screen.
     pub fn fill<const N: usize>(
         &mut self,
         triangle: [ScreenVertex<(Projected<f64, N>, f64)>; 3],

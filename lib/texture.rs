@@ -42,7 +42,8 @@ impl AddressMode {
     ///   Mirror    2  1  0  0  1  2  2  1  0
     /// ```
     ///
-    /// Whatever comes in, NaN too, what goes out is inside. Source: Direct3D 11.3 functional specification, 7.18.9.
+    /// Whatever comes in, NaN too, what goes out is inside. Source: Direct3D 11.3 functional
+    /// specification, 7.18.9.
     #[inline]
     pub(crate) fn apply<R: Real>(self, index: R, count: R) -> R {
         let rest = |period: R| index - (index / period).floor() * period;
@@ -234,10 +235,10 @@ pub(crate) fn bilinear<R: Real>(
             AddressMode::Repeat | AddressMode::Mirror => along,
         }
     });
-    let columns = [x.floor(), x.floor() + R::of(1.0)].map(|column| mode.apply(column, width));
+    let [left, right] = [x.floor(), x.floor() + R::of(1.0)].map(|column| mode.apply(column, width));
     let rows = [y.floor(), y.floor() + R::of(1.0)].map(|row| mode.apply(row, height));
-    let mixed = rows.map(|row| linear(texel(columns[0], row), texel(columns[1], row), x - x.floor()));
-    linear(mixed[0], mixed[1], y - y.floor())
+    let [below, above] = rows.map(|row| linear(texel(left, row), texel(right, row), x - x.floor()));
+    linear(below, above, y - y.floor())
 }
 // ANCHOR_END: bilinear
 

@@ -92,7 +92,8 @@ impl Frustum {
     ///   w′ = z
     /// ```
     ///
-    /// After the divide z is a + b/z: −1 on the near plane, 1 on the far plane. Source: book, section 8.2.
+    /// After the divide z is a + b/z: −1 on the near plane, 1 on the far plane. Source: book,
+    /// section 8.2.
     #[must_use]
     pub fn project(&self, view: DVec3) -> DVec4 {
         let Self { left, right, bottom, top, near, far } = *self;
@@ -184,7 +185,8 @@ impl Viewport {
     }
 
     // ANCHOR: viewport
-    /// NDC → screen: −1..1 becomes 0..width − 1 and 0..height − 1, since the book's pixels sit on whole coordinates.
+    /// NDC → screen: −1..1 becomes 0..width − 1 and 0..height − 1, since the book's pixels sit on
+    /// whole coordinates.
     ///
     /// Source: book, section 8.2.
     #[must_use]
@@ -198,7 +200,8 @@ impl Viewport {
     // ANCHOR_END: viewport
 
     // ANCHOR: pixel_areas
-    /// NDC → screen: −1..1 becomes 0..width and 0..height; a pixel is a square, (i, j) the one from i to i + 1.
+    /// NDC → screen: −1..1 becomes 0..width and 0..height; a pixel is a square, (i, j) the one from
+    /// i to i + 1.
     ///
     /// ```text
     ///   book:    ●─────●─────●─────●      4 pixels are 3 apart, −1 and 1 lie on the outer ones
@@ -212,7 +215,8 @@ impl Viewport {
     #[must_use]
     #[inline]
     pub fn pixel_areas(&self, ndc: DVec3) -> DVec2 {
-        DVec2::new(self.x + (ndc.x + 1.0) / 2.0 * self.width, self.y + (ndc.y + 1.0) / 2.0 * self.height)
+        let Self { x, y, width, height } = *self;
+        DVec2::new(x + (ndc.x + 1.0) / 2.0 * width, y + (ndc.y + 1.0) / 2.0 * height)
     }
     // ANCHOR_END: pixel_areas
 
@@ -324,7 +328,8 @@ pub fn about(pivot: DVec3, transformation: DMat4) -> DMat4 {
 // ANCHOR_END: matrices
 
 // ANCHOR: look_at
-/// `view_from_world` of a camera at `eye` that looks towards `target`, with `up` upwards in the picture.
+/// `view_from_world` of a camera at `eye` that looks towards `target`, with `up` upwards in the
+/// picture.
 ///
 /// ```text
 ///   ┌ right.x    right.y    right.z    −right·eye   ┐   forward = target − eye     (+z)
@@ -333,9 +338,9 @@ pub fn about(pivot: DVec3, transformation: DMat4) -> DMat4 {
 ///   └    0          0          0           1        ┘   each of length 1
 /// ```
 ///
-/// The eye is subtracted, not the target: the eye becomes the origin. Left-handed. Not finite if `up` points along the
-/// line of sight, to within 10⁻¹² of a full angle: what is left of it then comes from rounding. Source: second and fourth
-/// note (world to view space).
+/// The eye is subtracted, not the target: the eye becomes the origin. Left-handed. Not finite if
+/// `up` points along the line of sight, to within 10⁻¹² of a full angle: what is left of it then
+/// comes from rounding. Source: second and fourth note (world to view space).
 #[must_use]
 pub fn look_at(eye: DVec3, target: DVec3, up: DVec3) -> DMat4 {
     let forward = (target - eye).normalize();
@@ -351,9 +356,9 @@ pub fn look_at(eye: DVec3, target: DVec3, up: DVec3) -> DMat4 {
 // ANCHOR: normal_matrix
 /// The matrix for normals that belongs to a matrix for points: the inverse of its transpose.
 ///
-/// A normal n is perpendicular to every direction t of a surface, n·t = 0. When t becomes M t, n must become
-/// (M⁻¹)ᵀ n, since ((M⁻¹)ᵀ n)·(M t) = n·(M⁻¹ M t) = n·t. For rotations that is M itself. Not finite if M flattens
-/// space. Source: fourth note, transformation of normals.
+/// A normal n is perpendicular to every direction t of a surface, n·t = 0. When t becomes M t, n
+/// must become (M⁻¹)ᵀ n, since ((M⁻¹)ᵀ n)·(M t) = n·(M⁻¹ M t) = n·t. For rotations that is M
+/// itself. Not finite if M flattens space. Source: fourth note, transformation of normals.
 #[must_use]
 pub fn normal_matrix(world_from_model: DMat4) -> DMat3 {
     DMat3::from_mat4(world_from_model).inverse().transpose()
@@ -366,7 +371,7 @@ mod tests {
     use glam::dvec3;
 
     #[test]
-    fn a_point_on_the_near_plane_stays() {
+    fn a_point_on_the_image_plane_stays() {
         let point = dvec3(3.0, -2.0, 5.0);
         assert_eq!(perspective_divide(perspective(point, 5.0)), point);
     }
@@ -522,7 +527,7 @@ mod tests {
     }
 
     #[test]
-    fn normals_stay_upright() {
+    fn normals_stay_perpendicular() {
         // A slope under a scale of 1 : 4: the model matrix would tilt the normal the wrong way.
         let world_from_model =
             translate(dvec3(5.0, 6.0, 7.0)) * scale(dvec3(1.0, 4.0, 2.0)) * rotate_x_to_y(0.4);

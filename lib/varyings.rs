@@ -43,8 +43,8 @@ pub fn weight_gradients<R: Real>([a, b, c]: [DVec2; 3]) -> WeightGradients<R> {
 }
 
 // ANCHOR: triangle_varyings
-/// What changes linearly on the screen: what a vertex carries, divided by w; the same at a point between vertices; or how
-/// much all of it changes from there to another point.
+/// What changes linearly on the screen: what a vertex carries, divided by w; the same at a point
+/// between vertices; or how much all of it changes from there to another point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinearVaryings<R, const N: usize> {
     /// 1/w; for [`Interpolation::Affine`] w itself.
@@ -56,7 +56,8 @@ pub struct LinearVaryings<R, const N: usize> {
 }
 
 impl<R: Real, const N: usize> LinearVaryings<R, N> {
-    /// At a vertex: divides what is to be interpolated by w. All triangles that meet there can share it.
+    /// At a vertex: divides what is to be interpolated by w. All triangles that meet there can
+    /// share it.
     #[must_use]
     #[inline]
     pub fn new(vertex: &NdcVertex<N>, interpolation: Interpolation) -> Self {
@@ -101,7 +102,8 @@ impl<R: Real, const N: usize> LinearVaryings<R, N> {
         }
     }
 
-    /// How the varyings change at a point, if this is how they change linearly from there to the next pixel.
+    /// How the varyings change at a point, if this is how they change linearly from there to the
+    /// next pixel.
     ///
     /// From V = (V/w) / (1/w) by the quotient rule: ∂V = w (∂(V/w) − V ∂(1/w)).
     #[must_use]
@@ -116,7 +118,8 @@ impl<R: Real, const N: usize> LinearVaryings<R, N> {
     }
 }
 
-/// What the vertices of a triangle carry, made ready for weights: its value at the first, and the differences to the other two.
+/// What the vertices of a triangle carry, made ready for weights: its value at the first, and the
+/// differences to the other two.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TriangleVaryings<R, const N: usize> {
     first: LinearVaryings<R, N>,
@@ -132,7 +135,7 @@ impl<R: Real, const N: usize> TriangleVaryings<R, N> {
     pub fn new(vertices: &[NdcVertex<N>; 3], interpolation: Interpolation) -> Self {
         let [first, second, third] =
             vertices.each_ref().map(|vertex| LinearVaryings::new(vertex, interpolation));
-        let difference = |vertex: LinearVaryings<R, N>| vertex.with(&first, |vertex, first| vertex - first);
+        let difference = |vertex: LinearVaryings<R, N>| vertex.with(&first, |a, b| a - b);
         Self { first, to_second: difference(second), to_third: difference(third), interpolation }
     }
 
@@ -147,7 +150,7 @@ impl<R: Real, const N: usize> TriangleVaryings<R, N> {
     #[must_use]
     #[inline]
     pub fn change(&self, [second, third]: [R; 2]) -> LinearVaryings<R, N> {
-        self.to_second.with(&self.to_third, |to_second, to_third| to_second * second + to_third * third)
+        self.to_second.with(&self.to_third, |b, c| b * second + c * third)
     }
 
     /// w and the varyings where the second and the third vertex have these weights.
@@ -160,8 +163,13 @@ impl<R: Real, const N: usize> TriangleVaryings<R, N> {
     /// How the varyings change from pixel to pixel at a point.
     #[must_use]
     #[inline]
-    pub fn derivatives(&self, point: &Projected<R, N>, gradients: WeightGradients<R>) -> Derivatives<R, N> {
-        let [dx, dy] = gradients.map(|weights| self.change(weights).derivative(point, self.interpolation));
+    pub fn derivatives(
+        &self,
+        point: &Projected<R, N>,
+        weight_gradients: WeightGradients<R>,
+    ) -> Derivatives<R, N> {
+        let changes = weight_gradients.map(|weights| self.change(weights));
+        let [dx, dy] = changes.map(|change| change.derivative(point, self.interpolation));
         Derivatives { dx, dy }
     }
 }

@@ -11,7 +11,7 @@ use rasterbook::interpolate::{Interpolation, Projected, ScreenVertex, step_value
 use rasterbook::line::{StepAxis, dda};
 use rasterbook::merge::Merge;
 use rasterbook::observer::Observer;
-use rasterbook::payload::{Payload, StepLimit, Walk};
+use rasterbook::payload::{Payload, StepClamp, Walk};
 use rasterbook::probe::{Fragment, Piece, Probe};
 use rasterbook::scanline::{self, EdgeWalk};
 use rasterbook::texture::AddressMode;
@@ -67,7 +67,7 @@ fn rows_run_from_trunc_y1_while_y_is_below_y2() {
 }
 
 #[test]
-fn the_row_of_a_fractional_middle_corner_is_drawn_twice() {
+fn the_row_of_a_fractional_middle_vertex_is_drawn_twice() {
     let rows = |middle: f64| -> Vec<i32> {
         spans([(4.0, 0.0), (0.0, middle), (4.0, 5.0)]).into_iter().map(|span| span.0).collect()
     };
@@ -109,7 +109,7 @@ fn arithmetic_is_not_fused() {
 fn the_default_of_every_option() {
     assert_eq!(StepAxis::default(), StepAxis::Longer);
     assert_eq!(EdgeWalk::default(), EdgeWalk::Clamped);
-    assert_eq!(StepLimit::default(), StepLimit::Edges, "the book's remedy");
+    assert_eq!(StepClamp::default(), StepClamp::Edges, "the book's remedy");
     assert_eq!(Interpolation::default(), Interpolation::PerspectiveCorrect);
     assert_eq!(AddressMode::default(), AddressMode::Clamp);
     let state = RenderState::default();
@@ -147,7 +147,7 @@ fn clip_planes_come_in_the_order_of_the_book() {
 }
 
 #[test]
-fn a_fan_begins_at_the_first_corner() {
+fn a_fan_begins_at_the_first_vertex() {
     let polygon: arrayvec::ArrayVec<char, 4> = ['a', 'b', 'c', 'd'].into();
     assert_eq!(fan(polygon).collect::<Vec<_>>(), [['a', 'b', 'c'], ['a', 'c', 'd']]);
 }
@@ -295,7 +295,7 @@ fn the_six_planes_are_the_walls_of_the_frustum() {
 }
 
 #[test]
-fn the_way_on_the_screen_from_the_way_in_space() {
+fn the_parameter_on_the_screen_from_that_in_space() {
     // t′ = t ωb / ((1 − t) ωa + t ωb), against points that are projected one by one.
     let (a, b) = (dvec3(-3.0, 1.0, 2.0), dvec3(5.0, -4.0, 11.0));
     let on_screen = |point: DVec3| point.x / point.z;
@@ -315,5 +315,45 @@ fn a_step_of_a_z_buffer_grows_with_the_square_of_the_distance() {
         let grown = rasterbook::depth::w_from_z(z + step, near, far) - w;
         let expected = step * w * w * (far - near) / (near * far);
         assert!((grown / expected - 1.0).abs() < 1e-3, "{grown} is not {expected} at {w}");
+    }
+}
+
+#[test]
+fn how_far_apart_two_surfaces_must_be() {
+    use rasterbook::depth::{DepthFormat, reversed_z_from_w, z_from_w};
+
+    // The table of chapter 6: the distance w; integers, `f32` and reversed `f32`; how much finer the last one is.
+    let table = [
+        (1.0, [5.96e-7, 5.96e-7, 7.45e-8], 8.0),
+        (10.0, [5.96e-5, 5.96e-5, 9.31e-7], 64.0),
+        (100.0, [0.00596, 0.00596, 5.82e-6], 1024.0),
+        (500.0, [0.149, 0.149, 1.82e-5], 8192.0),
+    ];
+    let (near, far) = (0.1, 1000.0);
+    for (w, expected, finer) in table {
+        let ordinary = z_from_w(w, near, far);
+        let reversed = reversed_z_from_w(w, near, far);
+        let steps = [
+            DepthFormat::Unorm24.step(ordinary),
+            DepthFormat::Float32.step(ordinary),
+            DepthFormat::Float32.step(reversed),
+        ];
+        let distances = steps.map(|step| step * w * w * (far - near) / (near * far));
+        for (distance, expected) in distances.into_iter().zip(expected) {
+            assert!((distance / expected - 1.0).abs() < 2e-3, "{distance} is not {expected} at {w}");
+        }
+        assert_eq!(steps[1] / steps[2], finer);
+
+        // A little more than a step apart they are told apart, wherever they lie between two steps.
+        for index in 0..100 {
+            let from = w * (1.0 + f64::from(index) * 1e-5);
+            let to = distances.map(|distance| from + 1.01 * distance);
+            for (format, to) in [(DepthFormat::Unorm24, to[0]), (DepthFormat::Float32, to[1])] {
+                let [a, b] = [from, to].map(|w| format.stored(z_from_w(w, near, far)));
+                assert!(a < b, "{format:?} at {from}");
+            }
+            let stored = |w| DepthFormat::Float32.stored(reversed_z_from_w(w, near, far));
+            assert!(stored(from) > stored(to[2]), "reversed at {from}");
+        }
     }
 }

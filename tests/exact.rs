@@ -133,7 +133,7 @@ proptest! {
     }
 
     #[test]
-    fn no_value_leaves_the_range_of_the_corners(
+    fn no_value_leaves_the_range_of_the_vertices(
         triangle in prop_oneof![prop::array::uniform3(corner()), sliver(), tiny()],
         w in prop::array::uniform3(0.1..20.0), values in prop::array::uniform3(-5.0..5.0),
     ) {
@@ -194,7 +194,7 @@ proptest! {
 }
 
 #[test]
-fn any_corner_is_safe() {
+fn any_vertex_is_safe() {
     let odd = [0.0, 0.5, -65_536.0, 65_536.0, 65_536.1, 1e9, f64::MAX, f64::NAN, f64::INFINITY, -1e300];
     for &a in &odd {
         for &b in &odd {

@@ -13,7 +13,7 @@ use rasterbook::interpolate::Interpolation;
 use rasterbook::merge::{Merge, Verdict};
 use rasterbook::model::{Model, ModelVertex};
 use rasterbook::observer::Observer;
-use rasterbook::payload::{StepLimit, Walk};
+use rasterbook::payload::{StepClamp, Walk};
 use rasterbook::probe::{Fragment, Piece, Probe};
 use rasterbook::raster::Rasterizer;
 use rasterbook::transform::{Frustum, Viewport, about, rotate_x_to_y, rotate_z_to_y};
@@ -147,9 +147,9 @@ proptest! {
         // Seen edge-on, a triangle's places are all but undefined.
         prop_assume!(a.dot(normal).abs() > 0.1);
         let viewport = Viewport::whole(Rect::sized(SIZE.0, SIZE.1));
-        // Limited everywhere: with the book's remedy the last pixel of a row that is a hair wide lies so many row widths
+        // Clamped everywhere: with the book's remedy the last pixel of a row that is a hair wide lies so many row widths
         // beyond its end that rounding shows.
-        let walk = Walk { limit: StepLimit::Everywhere, ..Walk::default() };
+        let walk = Walk { clamp: StepClamp::Everywhere, ..Walk::default() };
         let recorder = Recorder::default();
         render(&points, RenderState { walk, ..RenderState::default() }, &recorder);
         // On an exactly level edge between two rows the book's clamp makes one row of one constant value.
@@ -400,8 +400,8 @@ impl Probe for Strays {
 
 #[test]
 fn spikes_are_texels_from_outside_a_triangle() {
-    fn strays(limit: StepLimit, rasterizer: &impl Rasterizer<Depth = f64>, ball: &Model) -> usize {
-        let walk = Walk { limit, ..Walk::default() };
+    fn strays(clamp: StepClamp, rasterizer: &impl Rasterizer<Depth = f64>, ball: &Model) -> usize {
+        let walk = Walk { clamp, ..Walk::default() };
         let state = RenderState { walk, cull: CullMode::Back, ..RenderState::default() };
         let mut target = Target::new(640, 480);
         target.clear(state.clear_color, state.clear_depth);
@@ -410,9 +410,9 @@ fn spikes_are_texels_from_outside_a_triangle() {
         probe.count.into_inner()
     }
     let ball = rasterbook::figure::assets::model("sphere.obj").expect("an asset");
-    let [overrun, edges, everywhere] = [StepLimit::Overrun, StepLimit::Edges, StepLimit::Everywhere]
-        .map(|limit| strays(limit, &Scanline, &ball));
-    assert_eq!(strays(StepLimit::Overrun, &Exact::<f64>::new(), &ball), 0, "nothing is stepped");
+    let [overrun, edges, everywhere] = [StepClamp::Overrun, StepClamp::Edges, StepClamp::Everywhere]
+        .map(|clamp| strays(clamp, &Scanline, &ball));
+    assert_eq!(strays(StepClamp::Overrun, &Exact::<f64>::new(), &ball), 0, "nothing is stepped");
     assert_eq!(everywhere, 0);
     assert!(edges > 0, "the ends of rows still pass");
     assert!(overrun > edges + 1000, "{overrun} without the remedy, {edges} with it");

@@ -40,7 +40,8 @@ pub(super) fn bounding_box(framebuffer: &mut Framebuffer, knobs: &Knobs) {
             let tint = |value: i64| if value < 0 { 90 } else { 25 };
             let [red, green, blue] = values.map(tint);
             let inside = Color::rgb(240, 170, 60);
-            screen.set(x, y, if coverage.covers(values) { inside } else { Color::rgb(red, green, blue) });
+            let outside = Color::rgb(red, green, blue);
+            screen.set(x, y, if coverage.covers(values) { inside } else { outside });
         }
     });
 }
@@ -60,8 +61,8 @@ type Rule = fn([DVec2; 3], Scissor, &mut dyn FnMut(i32, i32));
 fn hexagon(framebuffer: &mut Framebuffer, center: DVec2, rule: Rule) {
     // Every vertex lies on the center of a pixel, and so do many pixels on the seams between two
     // triangles.
-    let rim =
-        [(35.5, 14.5), (27.5, 26.5), (11.5, 26.5), (3.5, 14.5), (11.5, 2.5), (27.5, 2.5)].map(DVec2::from);
+    let rim = [(35.5, 14.5), (27.5, 26.5), (11.5, 26.5), (3.5, 14.5), (11.5, 2.5), (27.5, 2.5)]
+        .map(DVec2::from);
     picture::draw_enlarged(framebuffer, (40, 30), |screen| {
         for i in 0..6 {
             rule([center, rim[i], rim[(i + 1) % 6]], screen.scissor(), &mut |x, y| {
@@ -85,7 +86,9 @@ fn one_more(color: Color) -> Color {
 
 /// The pixels of a triangle by the rule of the book, row by row.
 fn by_rows(triangle: [DVec2; 3], scissor: Scissor, emit: &mut dyn FnMut(i32, i32)) {
-    spans(triangle, EdgeWalk::Clamped, scissor, |span| span.columns().for_each(|x| emit(x, span.y)));
+    spans(triangle, EdgeWalk::Clamped, scissor, |span| {
+        span.columns().for_each(|x| emit(x, span.y));
+    });
 }
 
 /// The hexagon by rows.
@@ -95,8 +98,8 @@ pub(super) fn shared_edge(framebuffer: &mut Framebuffer, knobs: &Knobs) {
 // ANCHOR_END: shared_edge
 
 // ANCHOR: top_left
-/// The pixels whose centers are inside; one on a shared edge belongs to one triangle, by the top-left
-/// rule.
+/// The pixels whose centers are inside; one on a shared edge belongs to one triangle, by the
+/// top-left rule.
 fn by_centers(triangle: [DVec2; 3], scissor: Scissor, emit: &mut dyn FnMut(i32, i32)) {
     let Some(coverage) = Coverage::new(triangle) else { return };
     coverage.pixels(scissor).for_each(|(x, y, _)| emit(x, y));
@@ -146,7 +149,8 @@ pub(super) fn two_rules(framebuffer: &mut Framebuffer, knobs: &Knobs) {
         let cells = picture::draw_enlarged_within(framebuffer, half, GRID, |screen| {
             rule(triangle, screen.scissor(), &mut |x, y| {
                 let is_shared = others.contains(&(x, y));
-                screen.set(x, y, if is_shared { Color::rgb(60, 110, 190) } else { Color::rgb(240, 150, 50) });
+                let [blue, orange] = [Color::rgb(60, 110, 190), Color::rgb(240, 150, 50)];
+                screen.set(x, y, if is_shared { blue } else { orange });
             });
         });
         let mut sketch = Sketch::new(framebuffer, cells).within(half);

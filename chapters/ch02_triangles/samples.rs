@@ -42,7 +42,8 @@ enum Shading {
 // ANCHOR: draw_samples
 /// Draws a patch: coverage and depth for each sample, color as often as `shading` says.
 fn draw(samples: &mut Samples<'_>, patch: &Patch, shading: Shading) {
-    let coverage = Coverage::new(patch.vertices.map(|[x, y, _]| dvec2(x, y))).expect("a triangle with area");
+    let coverage =
+        Coverage::new(patch.vertices.map(|[x, y, _]| dvec2(x, y))).expect("a triangle with area");
     // The weights of the three vertices at a point of the screen.
     let weights = |place: Subpixel| {
         let [second, third]: [f64; 2] = coverage.weights(coverage.edge_values(place));
@@ -90,7 +91,8 @@ fn scene(framebuffer: &mut Framebuffer, pattern: &Pattern, shading: Shading, shi
         },
     ];
     for i in 0..9 {
-        let (tip, root) = (dvec2(45.3, 3.4), dvec2(78.1 - 3.1 * f64::from(i), 9.0 + 5.7 * f64::from(i)));
+        let (tip, root) =
+            (dvec2(45.3, 3.4), dvec2(78.1 - 3.1 * f64::from(i), 9.0 + 5.7 * f64::from(i)));
         let aside = (root - tip).perp().normalize() * 0.75;
         let vertices = [tip, root - aside, root + aside].map(|point| [point.x, point.y, 1.0]);
         patches.push(Patch { vertices, paint: Paint::Plain(light) });

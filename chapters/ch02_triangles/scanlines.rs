@@ -44,7 +44,11 @@ pub(super) const SPLIT: &[Knob] = &[
         [430.0, 40.0],
         "raise it above b: it is now the middle vertex, and the cut goes through it",
     ),
-    Knob::point("b", [90.0, 190.0], "the cut has its height, and P′ slides along the opposite edge"),
+    Knob::point(
+        "b",
+        [90.0, 190.0],
+        "the cut has its height, and P′ slides along the opposite edge",
+    ),
     Knob::point("c", [540.0, 440.0], "lower it to the height of b: the upper half vanishes"),
 ];
 
@@ -115,8 +119,9 @@ pub(super) fn facets(framebuffer: &mut Framebuffer, subject: &Subject) {
     let mut triangles: Vec<[DVec3; 3]> = Vec::new();
     for part in subject.model.parts.iter() {
         let vertices = part.mesh.vertices();
-        triangles
-            .extend(part.mesh.triangles().map(|triangle| triangle.map(|index| vertices[index].position)));
+        triangles.extend(
+            part.mesh.triangles().map(|triangle| triangle.map(|index| vertices[index].position)),
+        );
     }
     triangles.sort_by(|a, b| depth_sum(b).total_cmp(&depth_sum(a)));
 
@@ -125,8 +130,14 @@ pub(super) fn facets(framebuffer: &mut Framebuffer, subject: &Subject) {
         // How much of a face's normal points to us: the cosine of the angle at which we see it.
         let facing = -(c - a).cross(b - a).normalize_or_zero().z;
         if facing > 0.0 {
-            let triangle = [a, b, c].map(|point| fit.at(dvec2(240.0, 240.0) + point.truncate() * 135.0));
-            fill(framebuffer, triangle, EdgeWalk::Clamped, Color::gray((40.0 + 215.0 * facing) as u8));
+            let triangle =
+                [a, b, c].map(|point| fit.at(dvec2(240.0, 240.0) + point.truncate() * 135.0));
+            fill(
+                framebuffer,
+                triangle,
+                EdgeWalk::Clamped,
+                Color::gray((40.0 + 215.0 * facing) as u8),
+            );
         }
     }
 }

@@ -37,7 +37,7 @@ fn checkered_floor(framebuffer: &mut Framebuffer, knobs: &Knobs, interpolation: 
 
     // The camera is above the floor and looks at the middle of a picture of 640×480.
     let (pieces, height) = (knobs.whole("pieces"), knobs.number("height"));
-    let corner = |column: i32, row: i32| {
+    let at = |column: i32, row: i32| {
         let [right, away] = [column, row].map(|index| f64::from(index) / f64::from(pieces));
         let (x, z) = (-720.0 + 1440.0 * right, 120.0 + 2400.0 * away);
         let seen = vertex([x, -height, z], [x / 240.0, z / 240.0]);
@@ -46,12 +46,14 @@ fn checkered_floor(framebuffer: &mut Framebuffer, knobs: &Knobs, interpolation: 
 
     let texture = Texture::checkerboard(Color::rgb(50, 60, 80), Color::rgb(235, 235, 225));
     for (row, column) in (0..pieces).flat_map(|row| (0..pieces).map(move |column| (row, column))) {
-        let near = [corner(column, row), corner(column + 1, row)];
-        let far = [corner(column, row + 1), corner(column + 1, row + 1)];
+        let near = [at(column, row), at(column + 1, row)];
+        let far = [at(column, row + 1), at(column + 1, row + 1)];
         for triangle in [[near[0], near[1], far[0]], [near[1], far[1], far[0]]] {
             let triangle = fit.triangle(triangle);
-            step_parameter(triangle, interpolation, Walk::default(), framebuffer.scissor(), |x, y, point| {
-                framebuffer.set(x, y, Color::truncated(texture.nearest(point.values, AddressMode::Repeat)));
+            let (scissor, walk) = (framebuffer.scissor(), Walk::default());
+            step_parameter(triangle, interpolation, walk, scissor, |x, y, point| {
+                let texel = texture.nearest(point.values, AddressMode::Repeat);
+                framebuffer.set(x, y, Color::truncated(texel));
             });
         }
     }

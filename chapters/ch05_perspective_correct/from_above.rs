@@ -50,7 +50,8 @@ pub(super) fn from_above(framebuffer: &mut Framebuffer, knobs: &Knobs) {
         dvec2(place.x, place.y.max(near + 4.0))
     });
     let at = |step: i32| a + (b - a) * (f64::from(step) / f64::from(steps));
-    let projected = |point: DVec2| perspective_divide(perspective(dvec3(point.x, 0.0, point.y), near)).x;
+    let projected =
+        |point: DVec2| perspective_divide(perspective(dvec3(point.x, 0.0, point.y), near)).x;
 
     let mut sketch = Sketch::new(framebuffer, fit);
     sketch.line(EYE + dvec2(-290.0, near), EYE + dvec2(290.0, near), 3.0, Color::gray(150));

@@ -60,7 +60,8 @@ type Triangle = [ScreenVertex<Projected<f64, 2>>; 3];
 fn square_at(distance: f64, tilt: f64) -> [Triangle; 2] {
     let (sin, cos) = libm::sincos(tilt * PI / 180.0);
     let (x, z) = (480.0 * cos, distance + 480.0 * sin);
-    let left = [vertex([0.0, 0.0, distance], [0.0, 0.0]), vertex([0.0, 480.0, distance], [0.0, 1.0])];
+    let left =
+        [vertex([0.0, 0.0, distance], [0.0, 0.0]), vertex([0.0, 480.0, distance], [0.0, 1.0])];
     let right = [vertex([x, 0.0, z], [1.0, 0.0]), vertex([x, 480.0, z], [1.0, 1.0])];
     [[left[0], right[0], left[1]], [right[0], left[1], right[1]]]
 }
@@ -90,8 +91,10 @@ fn textured(framebuffer: &mut Framebuffer, knobs: &Knobs, interpolation: Interpo
     let (triangles, texture) = tilted_square(knobs);
     for triangle in triangles {
         let triangle = fit.triangle(triangle);
-        step_parameter(triangle, interpolation, Walk::default(), framebuffer.scissor(), |x, y, point| {
-            framebuffer.set(x, y, Color::truncated(texture.nearest(point.values, AddressMode::Clamp)));
+        let (scissor, walk) = (framebuffer.scissor(), Walk::default());
+        step_parameter(triangle, interpolation, walk, scissor, |x, y, point| {
+            let texel = texture.nearest(point.values, AddressMode::Clamp);
+            framebuffer.set(x, y, Color::truncated(texel));
         });
     }
 }
@@ -119,11 +122,14 @@ pub(super) fn barycentric(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     let (triangles, texture) = tilted_square(knobs);
     for triangle in triangles {
         let triangle = fit.triangle(triangle);
-        let Some(coverage) = Coverage::new(triangle.map(|corner| corner.position)) else { continue };
+        let Some(coverage) = Coverage::new(triangle.map(|vertex| vertex.position)) else {
+            continue;
+        };
         for (x, y, areas) in coverage.pixels(framebuffer.scissor()) {
             let on_screen = areas.map(|area| area as f64 / coverage.twice_area as f64);
             let in_space = perspective_weights(on_screen, triangle.map(|vertex| vertex.varyings.w));
-            let uv = [0, 1].map(|k| (0..3).map(|i| in_space[i] * triangle[i].varyings.values[k]).sum());
+            let uv =
+                [0, 1].map(|k| (0..3).map(|i| in_space[i] * triangle[i].varyings.values[k]).sum());
             framebuffer.set(x, y, Color::truncated(texture.nearest::<f64>(uv, AddressMode::Clamp)));
         }
     }
@@ -136,9 +142,10 @@ fn textured_as_before(framebuffer: &mut Framebuffer, triangles: &[Triangle]) {
     let fit = Fit::new(framebuffer.rect(), [640.0, 480.0]);
     let texture = Texture::book();
     for &triangle in triangles {
-        let triangle = fit
-            .triangle(triangle)
-            .map(|vertex| ScreenVertex { position: vertex.position, varyings: vertex.varyings.values });
+        let triangle = fit.triangle(triangle).map(|vertex| ScreenVertex {
+            position: vertex.position,
+            varyings: vertex.varyings.values,
+        });
         step_values(triangle, Walk::default(), framebuffer.scissor(), |x, y, uv| {
             framebuffer.set(x, y, Color::truncated(texture.nearest(uv, AddressMode::Clamp)));
         });
@@ -147,8 +154,9 @@ fn textured_as_before(framebuffer: &mut Framebuffer, triangles: &[Triangle]) {
 
 /// A triangle that faces us.
 pub(super) fn facing(framebuffer: &mut Framebuffer) {
-    let corners = [([0.0, 0.0], [0.0, 0.0]), ([320.0, 480.0], [0.5, 1.0]), ([640.0, 0.0], [1.0, 0.0])];
-    textured_as_before(framebuffer, &[corners.map(|([x, y], uv)| vertex([x, y, 100.0], uv))]);
+    let vertices =
+        [([0.0, 0.0], [0.0, 0.0]), ([320.0, 480.0], [0.5, 1.0]), ([640.0, 0.0], [1.0, 0.0])];
+    textured_as_before(framebuffer, &[vertices.map(|([x, y], uv)| vertex([x, y, 100.0], uv))]);
 }
 
 /// A square that faces us.

@@ -4,10 +4,11 @@
 //! one another. The z-buffer decides anew at every pixel.
 //!
 //! New here: a depth for each pixel, and the depth test (`lib/depth.rs`). The depth is interpolated like any other
-//! value, by chapter 5's formula. The figures: `surfaces.rs`, `precision.rs`, `frames.rs`. Book: chapter 6.
+//! value, by chapter 5's formula. The figures: `surfaces.rs`, `precision.rs`, `reversed.rs`, `frames.rs`. Book: chapter 6.
 
 mod frames;
 mod precision;
+mod reversed;
 mod surfaces;
 
 use std::process::ExitCode;
@@ -32,6 +33,8 @@ pub(crate) const CHAPTER: Chapter = Chapter {
         Variant::with_knobs("w-buffer", precision::w_buffer, precision::STEPS, "the same scene with w stored, in 16 grays: black is near (1), white is far (12); each stands for the same distance"),
         Variant::with_knobs("steps", precision::steps, precision::ALONG_AXIS, "the distances that 4 bits tell apart, the eye on the left: above by a z-buffer, below by a w-buffer; in the orange step red and green have one depth")
             .size(640, 320),
+        Variant::with_knobs("z-fighting", reversed::z_fighting, reversed::CLOSE, "red plates 0.005 in front of green boards, at the distances that stand below: from 100 on ordinary depths are too coarse, and green shows through").remedied_by("reversed"),
+        Variant::with_knobs("reversed", reversed::reversed, reversed::CLOSE, "the same with 1 at the near plane and 0 at the far plane: every red plate is whole"),
         Variant::with_knobs("uncleared", frames::uncleared, frames::FRAMES, "the second frame of a moving square, depths of the first not cleared: the old square cuts a hole into the new one")
             .source("section 6.2, section 9.4.1").remedied_by("cleared"),
         Variant::with_knobs("cleared", frames::cleared, frames::FRAMES, "the same frame, its depths cleared first: the square is whole").source("section 6.2"),

@@ -8,7 +8,13 @@ use rasterbook::{Color, Framebuffer, Target};
 use super::surfaces::{FAR_AWAY, GREEN, RED, draw, draw_square, seen_from_middle};
 
 pub(super) const STEPS: &[Knob] = &[
-    Knob::whole("bits", 4, [1, 8], "bits", "one bit more makes twice as many steps, each half as high"),
+    Knob::whole(
+        "bits",
+        4,
+        [1, 8],
+        "bits",
+        "one bit more makes twice as many steps, each half as high",
+    ),
     Knob::number(
         "near",
         1.0,
@@ -121,12 +127,16 @@ pub(super) fn steps(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     }
 
     type OneWay = fn(f64, f64, f64) -> f64;
-    let rows: [(f64, OneWay, OneWay); 2] =
-        [(190.0, z_from_w, w_from_z), (65.0, linear_from_w, |depth, near, far| near + depth * (far - near))];
+    let rows: [(f64, OneWay, OneWay); 2] = [
+        (190.0, z_from_w, w_from_z),
+        (65.0, linear_from_w, |depth, near, far| near + depth * (far - near)),
+    ];
     for (bottom, depth_of, distance_of) in rows {
         let top = bottom + 105.0;
-        let border = |step: i32| x_of(distance_of(f64::from(step) / f64::from(1 << bits), near, far));
-        let [red, green] = [distance, distance + 1.5].map(|w| step_of(depth_of(w, near, far), bits));
+        let border =
+            |step: i32| x_of(distance_of(f64::from(step) / f64::from(1 << bits), near, far));
+        let [red, green] =
+            [distance, distance + 1.5].map(|w| step_of(depth_of(w, near, far), bits));
         let is_seen = near <= distance && distance + 1.5 <= far;
         for step in 0..1 << bits {
             let color = match step {

@@ -48,17 +48,21 @@ pub(super) const PIERCING: &[Knob] = &[
 /// The depth that the buffer is cleared to: farther away than anything drawn.
 pub(super) const FAR_AWAY: f64 = 1000.0;
 
-type Triangle<const N: usize> = [ScreenVertex<Projected<f64, N>>; 3];
+pub(super) type Triangle<const N: usize> = [ScreenVertex<Projected<f64, N>>; 3];
 
 // ANCHOR: vertex
-/// Projects a point of the book's scene with its texture coordinates; its depth z is the third value.
+/// Projects a point of the book's scene with its texture coordinates; its depth z is the third
+/// value.
 fn vertex([x, y, z]: [f64; 3], [u, v]: [f64; 2]) -> ScreenVertex<Projected<f64, 3>> {
     const NEAR: f64 = 80.0;
     let mut clip = perspective(dvec3(x, y, z), NEAR);
     // So that the divide leaves the depth: z · z / w = z.
     clip.z = DepthEncoding::ViewZ.clip_z(z, NEAR, FAR_AWAY);
     let screen = perspective_divide(clip);
-    ScreenVertex { position: screen.truncate(), varyings: Projected { w: clip.w, values: [u, v, screen.z] } }
+    ScreenVertex {
+        position: screen.truncate(),
+        varyings: Projected { w: clip.w, values: [u, v, screen.z] },
+    }
 }
 // ANCHOR_END: vertex
 
@@ -96,9 +100,13 @@ pub(super) fn z_buffer(framebuffer: &mut Framebuffer, knobs: &Knobs) {
         let [c, d] = [vertex([0.0, 480.0, left_z], uv[2]), vertex([x, 480.0, z], uv[3])];
         [[a, b, c], [b, c, d]]
     };
-    let tilted =
-        quad(tilted_side(knobs.number("tilt")), 100.0, [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]);
-    let facing = quad([480.0, distance], distance, [[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0]]);
+    let tilted = quad(
+        tilted_side(knobs.number("tilt")),
+        100.0,
+        [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]],
+    );
+    let facing =
+        quad([480.0, distance], distance, [[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0]]);
 
     let mut target = Target::like(framebuffer);
     target.clear(Color::BLACK, FAR_AWAY);
@@ -120,10 +128,16 @@ pub(super) fn seen_from_middle(x: f64, y: f64, z: f64) -> ScreenVertex<Projected
 }
 
 /// Draws a square that faces us, its lower left vertex given, as two triangles.
-pub(super) fn draw_square(target: &mut Target, [x, y, z]: [f64; 3], side: f64, test: DepthTest, flat: Color) {
-    let corner = |i: f64, j: f64| seen_from_middle(x + i * side, y + j * side, z);
-    draw(target, [corner(0.0, 0.0), corner(1.0, 0.0), corner(0.0, 1.0)], test, |_| flat);
-    draw(target, [corner(1.0, 0.0), corner(1.0, 1.0), corner(0.0, 1.0)], test, |_| flat);
+pub(super) fn draw_square(
+    target: &mut Target,
+    [x, y, z]: [f64; 3],
+    side: f64,
+    test: DepthTest,
+    flat: Color,
+) {
+    let at = |i: f64, j: f64| seen_from_middle(x + i * side, y + j * side, z);
+    draw(target, [at(0.0, 0.0), at(1.0, 0.0), at(0.0, 1.0)], test, |_| flat);
+    draw(target, [at(1.0, 0.0), at(1.0, 1.0), at(0.0, 1.0)], test, |_| flat);
 }
 
 pub(super) const RED: Color = Color::rgb(225, 70, 60);
@@ -134,9 +148,11 @@ const BLUE: Color = Color::rgb(70, 120, 220);
 /// Three squares, the farthest first: each covers what is behind it.
 pub(super) fn painter(framebuffer: &mut Framebuffer) {
     let mut target = Target::like(framebuffer);
-    for (place, color) in
-        [([-60.0, -20.0, 800.0], RED), ([-130.0, -110.0, 600.0], GREEN), ([-20.0, -140.0, 450.0], BLUE)]
-    {
+    for (place, color) in [
+        ([-60.0, -20.0, 800.0], RED),
+        ([-130.0, -110.0, 600.0], GREEN),
+        ([-20.0, -140.0, 450.0], BLUE),
+    ] {
         draw_square(&mut target, place, 210.0, DepthTest::Always, color);
     }
     *framebuffer = target.color;

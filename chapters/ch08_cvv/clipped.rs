@@ -76,14 +76,16 @@ pub(super) fn draw<const N: usize>(
         target.fill(on_screen, &color_of);
     }
 }
+// ANCHOR_END: draw
 
+// ANCHOR: draw_all
 /// A vertex in camera space, and its texture coordinates.
-type SpaceCorner = ([f64; 3], [f64; 2]);
+type SpaceVertex = ([f64; 3], [f64; 2]);
 
 /// Draws triangles into a cleared picture; `project` takes camera space to clip space.
 fn draw_all(
     framebuffer: &mut Framebuffer,
-    triangles: &[[SpaceCorner; 3]],
+    triangles: &[[SpaceVertex; 3]],
     project: impl Fn(DVec3) -> DVec4,
     range: DepthRange,
     test: ClipTest,
@@ -92,27 +94,28 @@ fn draw_all(
     target.clear(Color::BLACK, 1.0);
     let texture = Texture::book();
     let viewport = Viewport::fitting(target.color.rect(), ASPECT);
-    for corners in triangles {
-        let vertices = corners.map(|(view, uv)| ClipVertex { position: project(view.into()), varyings: uv });
+    for triangle in triangles {
+        let vertices =
+            triangle.map(|(view, uv)| ClipVertex { position: project(view.into()), varyings: uv });
         draw(&mut target, viewport, vertices, (&ClipVolume::Canonical.planes(range), test), |uv| {
             Color::truncated(texture.nearest(uv, AddressMode::Clamp))
         });
     }
     *framebuffer = target.color;
 }
-// ANCHOR_END: draw
+// ANCHOR_END: draw_all
 
 /// A triangle that fits into the view.
 pub(super) fn ndc(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     let view = view(knobs);
-    let corners = [
+    let triangle = [
         ([-320.0, 240.0, 10.0], [0.0, 1.0]),
         ([-320.0, -240.0, 10.0], [0.0, 0.0]),
         ([320.0, -240.0, 10.0], [1.0, 0.0]),
     ];
     draw_all(
         framebuffer,
-        &[corners],
+        &[triangle],
         |place| view.project(place),
         DepthRange::NegativeOneToOne,
         ClipTest::BeforeDivide,
@@ -120,7 +123,7 @@ pub(super) fn ndc(framebuffer: &mut Framebuffer, knobs: &Knobs) {
 }
 
 /// A triangle that is larger than the view and comes nearer than the near plane.
-const LARGE: [SpaceCorner; 3] = [
+const LARGE: [SpaceVertex; 3] = [
     ([-512.0, 384.0, 10.0], [0.0, 1.0]),
     ([-512.0, -384.0, 10.0], [0.0, 0.0]),
     ([512.0, -384.0, 4.0], [1.0, 0.0]),
@@ -152,7 +155,7 @@ pub(super) fn zero_to_one(framebuffer: &mut Framebuffer, knobs: &Knobs) {
 
 // ANCHOR: divide_first
 /// A floor of two triangles, from behind the eye, begin = −9, to the far plane.
-fn passing(begin: f64) -> [[SpaceCorner; 3]; 2] {
+fn passing(begin: f64) -> [[SpaceVertex; 3]; 2] {
     let [a, b] = [([-700.0, -240.0, begin], [0.0, 0.0]), ([700.0, -240.0, begin], [1.0, 0.0])];
     let [c, d] = [([700.0, -240.0, 19.0], [1.0, 1.0]), ([-700.0, -240.0, 19.0], [0.0, 1.0])];
     [[a, b, c], [a, c, d]]

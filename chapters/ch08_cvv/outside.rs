@@ -96,7 +96,7 @@ pub(super) fn outside(framebuffer: &mut Framebuffer, knobs: &Knobs) {
             triangle.map(|place| Vertex { position: project(place.into()), varyings: place })
         };
         draw(&mut target, left, vertices(&|point| camera.project(point)), CANONICAL, color);
-        // From outside all of it; each point is asked as clipping asks it.
+        // From outside all of it; each point is tested as clipping tests it.
         draw(&mut target, right, vertices(&from_outside), CANONICAL, |place| {
             if is_left(place) { color(place) } else { dimmed(color(place), 0.3) }
         });

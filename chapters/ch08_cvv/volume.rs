@@ -10,8 +10,16 @@ use rasterbook::{ClipVertex, Color, Framebuffer};
 use super::clipped::VIEW;
 
 pub(super) const PLANES: &[Knob] = &[
-    Knob::switch("left", true, "off: what lies beyond the left border stays from the second drawing on"),
-    Knob::switch("right", true, "off: what lies beyond the right border stays from the third drawing on"),
+    Knob::switch(
+        "left",
+        true,
+        "off: what lies beyond the left border stays from the second drawing on",
+    ),
+    Knob::switch(
+        "right",
+        true,
+        "off: what lies beyond the right border stays from the third drawing on",
+    ),
     Knob::switch("bottom", true, "off: what lies below stays from the fourth drawing on"),
     Knob::switch("top", true, "off: what lies above stays from the fifth drawing on"),
     Knob::switch("near", true, "off: what is too near stays in the last two drawings"),
@@ -46,15 +54,18 @@ pub(super) fn planes(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     const PANEL: f64 = 200.0;
     framebuffer.clear(Color::gray(24));
     let fit = Fit::new(framebuffer.rect(), [4.0 * PANEL, 2.0 * PANEL]);
-    let corners = [[-10_400.0, 2600.0, 90.0], [58.0, -245.0, 3.0], [820.0, 576.0, 8.0]];
-    let triangle = corners.map(|view| ClipVertex { position: VIEW.project(DVec3::from(view)), varyings: [] });
+    let vertices = [[-10_400.0, 2600.0, 90.0], [58.0, -245.0, 3.0], [820.0, 576.0, 8.0]];
+    let triangle =
+        vertices.map(|view| ClipVertex { position: VIEW.project(DVec3::from(view)), varyings: [] });
     let is_on = ["left", "right", "bottom", "top", "near", "far"].map(|name| knobs.is_on(name));
     for count in 0..=6 {
         let middle = PANEL * dvec2(0.5 + (count % 4) as f64, if count < 4 { 1.5 } else { 0.5 });
         let in_panel = |ndc: DVec2| fit.at(middle + ndc * 45.0);
-        let place = |vertex: &ClipVertex<0>| in_panel(perspective_divide(vertex.position).truncate());
+        let place =
+            |vertex: &ClipVertex<0>| in_panel(perspective_divide(vertex.position).truncate());
 
-        let view = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|corner| in_panel(corner.into()));
+        let view = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
+            .map(|corner| in_panel(corner.into()));
         for i in 0..4 {
             draw_line(framebuffer, view[i], view[(i + 1) % 4], Color::gray(110));
         }
@@ -101,7 +112,12 @@ pub(super) fn frustum(framebuffer: &mut Framebuffer, knobs: &Knobs) {
 
     for place in [&in_camera as &dyn Fn(DVec3) -> DVec2, &in_ndc] {
         for column in 0..7 {
-            draw_line(framebuffer, place(point(column, 0)), place(point(column, 4)), Color::gray(90));
+            draw_line(
+                framebuffer,
+                place(point(column, 0)),
+                place(point(column, 4)),
+                Color::gray(90),
+            );
         }
         for (row, color) in (0..).zip(ROWS) {
             draw_line(framebuffer, place(point(0, row)), place(point(6, row)), color);
@@ -112,7 +128,12 @@ pub(super) fn frustum(framebuffer: &mut Framebuffer, knobs: &Knobs) {
     }
     // The eye, and the two rays along the borders.
     for column in [0, 6] {
-        draw_line(framebuffer, in_camera(DVec3::ZERO), in_camera(point(column, 0)), Color::gray(60));
+        draw_line(
+            framebuffer,
+            in_camera(DVec3::ZERO),
+            in_camera(point(column, 0)),
+            Color::gray(60),
+        );
     }
     framebuffer.fill(fit.mark(in_camera(DVec3::ZERO), 2.0), Color::WHITE);
 }

@@ -8,7 +8,8 @@ use super::degrees;
 // ANCHOR: direction
 /// The direction of an azimuth and an elevation: 0, 0 is towards the reader; to the right, then up.
 pub(super) fn direction(azimuth: f64, elevation: f64) -> DVec3 {
-    let [(sin_a, cos_a), (sin_e, cos_e)] = [azimuth, elevation].map(|angle| libm::sincos(degrees(angle)));
+    let [(sin_a, cos_a), (sin_e, cos_e)] =
+        [azimuth, elevation].map(|angle| libm::sincos(degrees(angle)));
     dvec3(cos_e * sin_a, sin_e, -cos_e * cos_a)
 }
 // ANCHOR_END: direction

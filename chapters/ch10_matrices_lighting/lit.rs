@@ -5,7 +5,7 @@ use rasterbook::cull::CullMode;
 use rasterbook::figure::{Canvas, Knob, Subject};
 use rasterbook::light::lambert;
 use rasterbook::model::ModelVertex;
-use rasterbook::payload::{StepLimit, Walk};
+use rasterbook::payload::{StepClamp, Walk};
 use rasterbook::texture::{AddressMode, Texture};
 use rasterbook::transform::{Frustum, about, rotate_x_to_y, rotate_z_to_y};
 use rasterbook::{ClipVertex, Real, RenderState, Shaded, Shader};
@@ -26,9 +26,11 @@ pub(super) const KNOBS: &[Knob] = &[
 ];
 
 /// The camera of the book's last chapter.
-const CAMERA: Frustum = Frustum { left: -1.6, right: 1.6, bottom: -1.2, top: 1.2, near: 2.0, far: 10.0 };
+const CAMERA: Frustum =
+    Frustum { left: -1.6, right: 1.6, bottom: -1.2, top: 1.2, near: 2.0, far: 10.0 };
 /// Towards the light: from the upper right, behind the eye; of length 1.
-const TO_LIGHT: [f64; 3] = [0.577_350_269_189_625_8, 0.577_350_269_189_625_8, -0.577_350_269_189_625_8];
+const TO_LIGHT: [f64; 3] =
+    [0.577_350_269_189_625_8, 0.577_350_269_189_625_8, -0.577_350_269_189_625_8];
 
 // ANCHOR: lit_shader
 /// Diffuse light on a texture.
@@ -61,7 +63,9 @@ impl Shader<5> for Lit {
     fn fragment<R: Real>(&self, [u, v, nx, ny, nz]: [R; 5]) -> Shaded<R> {
         let diffuse = lambert([nx, ny, nz], self.to_light.map(R::of));
         let brightness = (diffuse + R::of(self.ambient)).min(R::of(1.0));
-        Shaded::opaque(self.texture.nearest([u, v], AddressMode::Repeat).map(|channel| brightness * channel))
+        Shaded::opaque(
+            self.texture.nearest([u, v], AddressMode::Repeat).map(|channel| brightness * channel),
+        )
     }
 }
 // ANCHOR_END: lit_shader
@@ -79,7 +83,8 @@ fn draw_subject(canvas: &mut Canvas, subject: &Subject, walk: Walk) {
     canvas.clear(&state);
     let view_from_model = turned(canvas.frame);
     let clip_from_model = CAMERA.matrix() * view_from_model;
-    let (to_light, ambient) = (to_light(&canvas.knobs, LIGHT, TO_LIGHT), canvas.knobs.number("ambient"));
+    let (to_light, ambient) =
+        (to_light(&canvas.knobs, LIGHT, TO_LIGHT), canvas.knobs.number("ambient"));
     for part in subject.model.parts.iter() {
         let texture = subject.texture_of(part);
         let shader = Lit { clip_from_model, view_from_model, texture, to_light, ambient };
@@ -95,6 +100,6 @@ pub(super) fn lit(canvas: &mut Canvas, subject: &Subject) {
 // ANCHOR: spikes
 /// The model, t free to pass the end of an edge.
 pub(super) fn spikes(canvas: &mut Canvas, subject: &Subject) {
-    draw_subject(canvas, subject, Walk { limit: StepLimit::Overrun, ..Walk::default() });
+    draw_subject(canvas, subject, Walk { clamp: StepClamp::Overrun, ..Walk::default() });
 }
 // ANCHOR_END: spikes

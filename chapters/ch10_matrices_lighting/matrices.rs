@@ -7,7 +7,8 @@ use rasterbook::light::lambert;
 use rasterbook::model::ModelVertex;
 use rasterbook::texture::{AddressMode, Texture};
 use rasterbook::transform::{
-    Frustum, Viewport, about, look_at, normal_matrix, rotate_x_to_y, rotate_x_to_z, scale, translate,
+    Frustum, Viewport, about, look_at, normal_matrix, rotate_x_to_y, rotate_x_to_z, scale,
+    translate,
 };
 use rasterbook::{ClipVertex, Color, Mesh, Real, RenderState, Shaded, Shader};
 
@@ -53,7 +54,13 @@ pub(super) const CAMERA: &[Knob] = &[
         "the eye goes up: vertical edges lean outwards more and more",
     ),
     Knob::number("distance", 11.0, [7.5, 30.0], "", "the eye goes away: what is near shrinks most"),
-    Knob::number("field-of-view", 40.0, [10.0, 100.0], "°", "the view widens, and everything shrinks alike"),
+    Knob::number(
+        "field-of-view",
+        40.0,
+        [10.0, 100.0],
+        "°",
+        "the view widens, and everything shrinks alike",
+    ),
 ];
 
 /// A textured surface without light.
@@ -83,8 +90,8 @@ pub(super) fn rotation(canvas: &mut Canvas) {
     // Read from the right: to the origin, turn, back, project.
     let clip_from_model = camera.matrix() * translate(axis) * turn * translate(-axis);
 
-    let corners = [(-1.0, 1.0, [0.0, 1.0]), (-1.0, -1.0, [0.0, 0.0]), (1.0, -1.0, [1.0, 0.0])];
-    let vertices = corners.map(|(x, y, uv)| (dvec3(x, y, 3.0), uv)).to_vec();
+    let points = [(-1.0, 1.0, [0.0, 1.0]), (-1.0, -1.0, [0.0, 0.0]), (1.0, -1.0, [1.0, 0.0])];
+    let vertices = points.map(|(x, y, uv)| (dvec3(x, y, 3.0), uv)).to_vec();
     let state = RenderState { cull: CullMode::Back, ..RenderState::default() };
     let shader = Textured { clip_from_model, texture: Texture::book() };
     canvas.render(&Mesh::unindexed(vertices).expect("whole triangles"), &shader, &state);
@@ -156,13 +163,19 @@ pub(super) fn pivot(canvas: &mut Canvas) {
 
 /// A white dot at the model's origin.
 fn draw_dot(canvas: &mut Canvas, clip_from_model: DMat4, panel: u32) {
-    let dot = [[-0.04, -0.04], [0.04, -0.04], [0.04, 0.04], [-0.04, -0.04], [0.04, 0.04], [-0.04, 0.04]];
-    draw_flat(canvas, &dot, &Plain { clip_from_model, color: Color::WHITE }, canvas.panel(panel, 2));
+    let dot =
+        [[-0.04, -0.04], [0.04, -0.04], [0.04, 0.04], [-0.04, -0.04], [0.04, 0.04], [-0.04, 0.04]];
+    draw_flat(
+        canvas,
+        &dot,
+        &Plain { clip_from_model, color: Color::WHITE },
+        canvas.panel(panel, 2),
+    );
 }
 
-fn draw_flat(canvas: &mut Canvas, corners: &[[f64; 2]], shader: &Plain, panel: Viewport) {
+fn draw_flat(canvas: &mut Canvas, points: &[[f64; 2]], shader: &Plain, panel: Viewport) {
     let state = RenderState { viewport: Some(panel), ..RenderState::default() };
-    canvas.draw(&Mesh::unindexed(corners.to_vec()).expect("whole triangles"), shader, &state);
+    canvas.draw(&Mesh::unindexed(points.to_vec()).expect("whole triangles"), shader, &state);
 }
 
 /// Diffuse light in world space.
@@ -181,13 +194,18 @@ impl Shader<5> for LitInWorld {
         let normal = (normal_matrix(self.world_from_model) * vertex.normal).normalize();
         let world = self.world_from_model * vertex.position.extend(1.0);
         let [u, v] = vertex.uv.map(|coordinate| coordinate * self.repeat);
-        ClipVertex { position: self.clip_from_world * world, varyings: [u, v, normal.x, normal.y, normal.z] }
+        ClipVertex {
+            position: self.clip_from_world * world,
+            varyings: [u, v, normal.x, normal.y, normal.z],
+        }
     }
 
     fn fragment<R: Real>(&self, [u, v, nx, ny, nz]: [R; 5]) -> Shaded<R> {
         let to_light = [-0.48, 0.8, -0.36].map(R::of);
         let brightness = lambert([nx, ny, nz], to_light) * R::of(0.75) + R::of(0.25);
-        Shaded::opaque(self.texture.nearest([u, v], AddressMode::Repeat).map(|channel| brightness * channel))
+        Shaded::opaque(
+            self.texture.nearest([u, v], AddressMode::Repeat).map(|channel| brightness * channel),
+        )
     }
 }
 
@@ -232,7 +250,8 @@ pub(super) fn camera(canvas: &mut Canvas) {
         // The models stand about (0, 0, 4).
         let world_from_model = translate(place) * scale(size) * translate(dvec3(0.0, 0.0, -4.0));
         for part in model.parts.iter() {
-            let shader = LitInWorld { clip_from_world, world_from_model, texture: texture.clone(), repeat };
+            let shader =
+                LitInWorld { clip_from_world, world_from_model, texture: texture.clone(), repeat };
             canvas.draw(&part.mesh, &shader, &state);
         }
     }

@@ -79,16 +79,18 @@ pub(super) const NORMALS: &[Knob] = &[
 
 /// A point of a ball of radius 1, and the normal that goes with it.
 #[derive(Clone, Copy)]
-struct Corner {
+struct BallVertex {
     position: DVec3,
     normal: DVec3,
 }
 
 /// A ball of so many rings and segments.
-fn ball(rings: u32, segments: u32) -> Mesh<Corner> {
+fn ball(rings: u32, segments: u32) -> Mesh<BallVertex> {
     let point = |ring: u32, segment: u32| {
-        let (up, round) =
-            (PI * f64::from(ring) / f64::from(rings), TAU * f64::from(segment) / f64::from(segments));
+        let (up, round) = (
+            PI * f64::from(ring) / f64::from(rings),
+            TAU * f64::from(segment) / f64::from(segments),
+        );
         dvec3(libm::sin(up) * libm::sin(round), -libm::cos(up), -libm::sin(up) * libm::cos(round))
     };
     let mut vertices = Vec::new();
@@ -96,8 +98,8 @@ fn ball(rings: u32, segments: u32) -> Mesh<Corner> {
         for segment in 0..segments {
             let [a, b] = [point(ring, segment), point(ring, segment + 1)];
             let [c, d] = [point(ring + 1, segment + 1), point(ring + 1, segment)];
-            for corner in [a, b, c, a, c, d] {
-                vertices.push(Corner { position: corner, normal: corner });
+            for point in [a, b, c, a, c, d] {
+                vertices.push(BallVertex { position: point, normal: point });
             }
         }
     }
@@ -105,12 +107,12 @@ fn ball(rings: u32, segments: u32) -> Mesh<Corner> {
 }
 
 /// The same ball with the normals of its faces.
-fn faceted(ball: &Mesh<Corner>) -> Mesh<Corner> {
+fn faceted(ball: &Mesh<BallVertex>) -> Mesh<BallVertex> {
     let mut vertices = Vec::new();
     for triangle in ball.vertices().chunks_exact(3) {
         let [a, b, c] = [triangle[0].position, triangle[1].position, triangle[2].position];
         let normal = (c - a).cross(b - a).normalize_or(DVec3::Y);
-        vertices.extend([a, b, c].map(|position| Corner { position, normal }));
+        vertices.extend([a, b, c].map(|position| BallVertex { position, normal }));
     }
     Mesh::unindexed(vertices).expect("whole triangles")
 }
@@ -145,15 +147,15 @@ impl Ball {
 }
 
 impl Shader<6> for Ball {
-    type Attributes = Corner;
+    type Attributes = BallVertex;
 
-    fn position(&self, corner: &Corner) -> Option<DVec3> {
-        Some(corner.position)
+    fn position(&self, vertex: &BallVertex) -> Option<DVec3> {
+        Some(vertex.position)
     }
 
-    fn vertex(&self, corner: &Corner) -> ClipVertex<6> {
-        let view = self.view_from_model * corner.position.extend(1.0);
-        let normal = self.normals * corner.normal;
+    fn vertex(&self, vertex: &BallVertex) -> ClipVertex<6> {
+        let view = self.view_from_model * vertex.position.extend(1.0);
+        let normal = self.normals * vertex.normal;
         let (view3, normal) = (view.truncate().to_array(), normal.to_array());
         let varyings = match self.frequency {
             Frequency::Vertex => {
@@ -174,9 +176,15 @@ impl Shader<6> for Ball {
 }
 // ANCHOR_END: frequency
 
-const CAMERA: Frustum = Frustum { left: -1.6, right: 1.6, bottom: -1.2, top: 1.2, near: 2.0, far: 20.0 };
-const SHINY: Material =
-    Material { ambient: 0.15, diffuse: 0.65, specular: 0.7, exponent: 24.0, highlight: Highlight::Phong };
+const CAMERA: Frustum =
+    Frustum { left: -1.6, right: 1.6, bottom: -1.2, top: 1.2, near: 2.0, far: 20.0 };
+const SHINY: Material = Material {
+    ambient: 0.15,
+    diffuse: 0.65,
+    specular: 0.7,
+    exponent: 24.0,
+    highlight: Highlight::Phong,
+};
 const CORAL: [f64; 3] = [215.0, 90.0, 70.0];
 const TEAL: [f64; 3] = [60.0, 140.0, 150.0];
 
@@ -215,10 +223,16 @@ fn two_balls(canvas: &mut Canvas, frequency: Frequency, is_faceted: bool) {
     canvas.clear(&state());
     let shiny = Material { exponent: canvas.knobs.number("exponent"), ..SHINY };
     let (coarse, light) = (canvas.knobs.whole("rings").unsigned_abs(), light(&canvas.knobs));
-    for (x, color, rings, segments) in [(-1.55, CORAL, coarse, coarse * 10 / 7), (1.55, TEAL, 24, 36)] {
+    for (x, color, rings, segments) in
+        [(-1.55, CORAL, coarse, coarse * 10 / 7), (1.55, TEAL, 24, 36)]
+    {
         let mesh = ball(rings, segments);
         let mesh = if is_faceted { faceted(&mesh) } else { mesh };
-        canvas.draw(&mesh, &ball_at(dvec3(x, 0.0, 5.0), 1.4, color, frequency, shiny, light), &state());
+        canvas.draw(
+            &mesh,
+            &ball_at(dvec3(x, 0.0, 5.0), 1.4, color, frequency, shiny, light),
+            &state(),
+        );
     }
 }
 
@@ -255,7 +269,8 @@ fn highlights(canvas: &mut Canvas, highlight: Highlight) {
     }
     // The flattened ball below is so large that we see a slope of it, and the light comes low from
     // behind us.
-    let broad = Material { ambient: 0.05, diffuse: 0.25, specular: 0.8, exponent: broad, highlight };
+    let broad =
+        Material { ambient: 0.05, diffuse: 0.25, specular: 0.8, exponent: broad, highlight };
     let low = Light::Directional(normalize([-0.9, 0.25, -0.6]));
     let view_from_model = translate(dvec3(0.0, -2.2, 6.0)) * scale(dvec3(3.2, 1.2, 2.0));
     let grazing = Ball {
@@ -279,7 +294,11 @@ pub(super) fn distance(canvas: &mut Canvas) {
             let place = dvec3(-2.8 + 1.4 * f64::from(i), y, 6.0);
             let lamp = Light::Point { position: [lamp_x, y, lamp_z], intensity: 3.0 };
             let light = if y > 0.0 { Light::Directional([0.0, 0.0, -1.0]) } else { lamp };
-            canvas.draw(&mesh, &ball_at(place, 0.62, color, Frequency::Fragment, dull, light), &state());
+            canvas.draw(
+                &mesh,
+                &ball_at(place, 0.62, color, Frequency::Fragment, dull, light),
+                &state(),
+            );
         }
     }
 }

@@ -87,9 +87,11 @@ impl Shader<3> for Rectangle {
                 Shaded::opaque(self.space.leave(light(white).map(|channel| channel * bright)))
                     .discard(square.is_less(zero))
             }
-            Sample::Mixture => {
-                Shaded::opaque(self.space.leave(mix(light(red), light(green), (x + one) * R::of(0.5))))
-            }
+            Sample::Mixture => Shaded::opaque(self.space.leave(mix(
+                light(red),
+                light(green),
+                (x + one) * R::of(0.5),
+            ))),
             Sample::Mean => {
                 Shaded::opaque(self.space.leave(mix(light(black), light(white), R::of(self.white))))
             }
@@ -116,13 +118,13 @@ fn draw(canvas: &mut Canvas, space: Space) {
     canvas.clear(&state);
     let white = 1.0 / f64::from(canvas.knobs.whole("period"));
     for (sample, [left, bottom, right, top]) in PLACES {
-        let corners = [
+        let points = [
             (left, bottom, -1.0, -1.0),
             (right, bottom, 1.0, -1.0),
             (right, top, 1.0, 1.0),
             (left, top, -1.0, 1.0),
         ];
-        let vertices = corners.map(|(column, row, x, y)| {
+        let vertices = points.map(|(column, row, x, y)| {
             (dvec4(column / 320.0 - 1.0, row / 240.0 - 1.0, 0.0, 1.0), DVec2::new(x, y), column)
         });
         let mesh = Mesh::indexed(vertices.to_vec(), vec![0, 1, 2, 0, 2, 3]).expect("two triangles");

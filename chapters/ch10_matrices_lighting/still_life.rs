@@ -100,9 +100,15 @@ impl Shader<8> for Thing {
         self.shade([x, y, z], [nx, ny, nz], texel)
     }
 
-    fn fragment_with_derivatives<R: Real>(&self, varyings: [R; 8], change: Derivatives<R, 8>) -> Shaded<R> {
+    fn fragment_with_derivatives<R: Real>(
+        &self,
+        varyings: [R; 8],
+        change: Derivatives<R, 8>,
+    ) -> Shaded<R> {
         let [x, y, z, nx, ny, nz, u, v] = varyings;
-        let level = self.texture.level_of_detail([change.dx[6], change.dx[7]], [change.dy[6], change.dy[7]]);
+        let level = self
+            .texture
+            .level_of_detail([change.dx[6], change.dx[7]], [change.dy[6], change.dy[7]]);
         let texel = self.texture.trilinear([u, v], level, AddressMode::Repeat);
         self.shade([x, y, z], [nx, ny, nz], texel)
     }
@@ -142,15 +148,23 @@ impl Shader<2> for Board {
     const USES_DERIVATIVES: bool = true;
 
     fn vertex(&self, &[x, z]: &[f64; 2]) -> ClipVertex<2> {
-        ClipVertex { position: self.view.clip_from_world * dvec3(x, 0.0, z).extend(1.0), varyings: [x, z] }
+        ClipVertex {
+            position: self.view.clip_from_world * dvec3(x, 0.0, z).extend(1.0),
+            varyings: [x, z],
+        }
     }
 
     fn fragment<R: Real>(&self, [x, z]: [R; 2]) -> Shaded<R> {
-        let texel = self.texture.bilinear([x, z].map(|c| c * R::of(0.5)), R::of(0.0), AddressMode::Repeat);
+        let texel =
+            self.texture.bilinear([x, z].map(|c| c * R::of(0.5)), R::of(0.0), AddressMode::Repeat);
         self.shade(x, z, texel)
     }
 
-    fn fragment_with_derivatives<R: Real>(&self, [x, z]: [R; 2], change: Derivatives<R, 2>) -> Shaded<R> {
+    fn fragment_with_derivatives<R: Real>(
+        &self,
+        [x, z]: [R; 2],
+        change: Derivatives<R, 2>,
+    ) -> Shaded<R> {
         let half = |pair: [R; 2]| pair.map(|c| c * R::of(0.5));
         let level = self.texture.level_of_detail(half(change.dx), half(change.dy));
         self.shade(x, z, self.texture.trilinear(half([x, z]), level, AddressMode::Repeat))
@@ -178,7 +192,8 @@ impl Board {
             sky = sky * (one - (hidden * R::of(0.8)).min(R::of(0.8)));
         }
         let surface = decode(texel);
-        let light = from_fn(|k| surface[k] * (R::of(SKY[k]) * sky + R::of(SUN[k] * to_light[1]) * sun));
+        let light =
+            from_fn(|k| surface[k] * (R::of(SKY[k]) * sky + R::of(SUN[k] * to_light[1]) * sun));
         // Far away the board fades into the horizon.
         let [dx, dz] = [x - R::of(self.view.eye[0]), z - R::of(self.view.eye[2])];
         let far = ((dx * dx + dz * dz).sqrt() * R::of(1.0 / 26.0)).min(one);
@@ -231,8 +246,15 @@ static PIECES: [Piece; 9] = [
 
 /// The balls that shadow the board: up, and the radius, of a piece of height 1. The sun's shadow shows a piece's outline; from
 /// the sky, which comes from everywhere, few balls do.
-const PAWN_IN_THE_SUN: &[[f64; 2]] =
-    &[[0.07, 0.3], [0.2, 0.2], [0.33, 0.14], [0.47, 0.11], [0.6, 0.11], [0.66, 0.17], [0.85, 0.165]];
+const PAWN_IN_THE_SUN: &[[f64; 2]] = &[
+    [0.07, 0.3],
+    [0.2, 0.2],
+    [0.33, 0.14],
+    [0.47, 0.11],
+    [0.6, 0.11],
+    [0.66, 0.17],
+    [0.85, 0.165],
+];
 const PAWN_BELOW_THE_SKY: &[[f64; 2]] = &[[0.1, 0.37], [0.62, 0.31]];
 const BALL: &[[f64; 2]] = &[[0.5, 0.5]];
 
@@ -275,8 +297,10 @@ pub(super) fn still_life(canvas: &mut Canvas) {
     let eye = dvec3(6.4 * libm::sin(angle), knobs.number("height"), -6.4 * libm::cos(angle));
     let view_from_world = look_at(eye, dvec3(0.0, 0.35, 0.2), DVec3::Y);
     let clip_from_view = Frustum::from_field_of_view(degrees(36.0), 16.0 / 9.0, 0.5, 60.0).matrix();
-    let (clip_from_world, to_light) =
-        (clip_from_view * view_from_world, to_light(&knobs, ["sun-azimuth", "sun-elevation"], TO_LIGHT));
+    let (clip_from_world, to_light) = (
+        clip_from_view * view_from_world,
+        to_light(&knobs, ["sun-azimuth", "sun-elevation"], TO_LIGHT),
+    );
     let view = View { clip_from_world, eye: eye.to_array(), to_light };
 
     let state = RenderState {
@@ -289,7 +313,8 @@ pub(super) fn still_life(canvas: &mut Canvas) {
     let mut load = LoadOp::Clear;
     // First what the board reflects, upside down: fronts run the other way there.
     let mirror = scale(dvec3(1.0, -1.0, 1.0));
-    for (reflect, front_face) in [(mirror, Winding::Clockwise), (DMat4::IDENTITY, Winding::CounterClockwise)]
+    for (reflect, front_face) in
+        [(mirror, Winding::Clockwise), (DMat4::IDENTITY, Winding::CounterClockwise)]
     {
         if front_face == Winding::CounterClockwise {
             draw_board(canvas, &view, knobs.number("opacity"));
@@ -299,7 +324,8 @@ pub(super) fn still_life(canvas: &mut Canvas) {
             let texture = if *texture == "wood.png" { wood.clone() } else { numbers.clone() };
             let repeat = if is_pawn(piece) { [3.0, 1.0] } else { [1.0, 1.0] };
             let world_from_model = reflect * world_from_model(piece);
-            let thing = Thing { view: view.clone(), world_from_model, texture, tint: *tint, repeat };
+            let thing =
+                Thing { view: view.clone(), world_from_model, texture, tint: *tint, repeat };
             for part in assets::model(model).expect("an asset").parts.iter() {
                 canvas.draw(&part.mesh, &thing, &RenderState { front_face, load, ..state });
                 load = LoadOp::Load;
@@ -312,10 +338,14 @@ fn draw_board(canvas: &mut Canvas, view: &View, opacity: f64) {
     let [sun, sky] = [PAWN_IN_THE_SUN, PAWN_BELOW_THE_SKY].map(balls);
     let board = Board { view: view.clone(), texture: SQUARES.clone(), sun, sky, opacity };
     let far = 60.0;
-    let corners = vec![[-far, -far], [far, -far], [far, far], [-far, far]];
+    let vertices = vec![[-far, -far], [far, -far], [far, far], [-far, far]];
     let state = RenderState {
         merge: Merge { blend: Blend::SourceOver, ..Merge::default() },
         ..RenderState::default()
     };
-    canvas.draw(&Mesh::indexed(corners, vec![0, 1, 2, 0, 2, 3]).expect("two triangles"), &board, &state);
+    canvas.draw(
+        &Mesh::indexed(vertices, vec![0, 1, 2, 0, 2, 3]).expect("two triangles"),
+        &board,
+        &state,
+    );
 }

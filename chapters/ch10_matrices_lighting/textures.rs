@@ -76,7 +76,11 @@ impl Shader<2> for Floor {
         Shaded::texel(self.texture.nearest_texel(uv, self.mode))
     }
 
-    fn fragment_with_derivatives<R: Real>(&self, uv: [R; 2], change: Derivatives<R, 2>) -> Shaded<R> {
+    fn fragment_with_derivatives<R: Real>(
+        &self,
+        uv: [R; 2],
+        change: Derivatives<R, 2>,
+    ) -> Shaded<R> {
         // A change that is twice as large asks for the next level.
         let larger = R::of(libm::exp2(self.bias));
         let [dx, dy] = [change.dx, change.dy].map(|way| way.map(|change| change * larger));
@@ -98,7 +102,8 @@ impl Shader<2> for Floor {
 
 /// The color of a level: around the color wheel from red.
 fn tint(level: usize) -> [f64; 3] {
-    [0.0, 1.0 / 3.0, 2.0 / 3.0].map(|turn| 127.5 + 127.5 * libm::cos(TAU * (level as f64 / 8.0 - turn)))
+    [0.0, 1.0 / 3.0, 2.0 / 3.0]
+        .map(|turn| 127.5 + 127.5 * libm::cos(TAU * (level as f64 / 8.0 - turn)))
 }
 
 fn camera(eye: DVec3, target: DVec3) -> DMat4 {
@@ -112,10 +117,19 @@ fn sky() -> RenderState {
 }
 
 /// A part of the floor; `uv` gives the texture coordinates at its vertices.
-fn floor(canvas: &mut Canvas, shader: &Floor, [left, right]: [f64; 2], uv: impl Fn(f64, f64) -> [f64; 2]) {
-    let corners = [[left, -10.0], [right, -10.0], [right, 400.0], [left, 400.0]];
-    let vertices = corners.map(|[x, z]| ([x, z], uv(x, z))).to_vec();
-    canvas.draw(&Mesh::indexed(vertices, vec![0, 1, 2, 0, 2, 3]).expect("two triangles"), shader, &sky());
+fn floor(
+    canvas: &mut Canvas,
+    shader: &Floor,
+    [left, right]: [f64; 2],
+    uv: impl Fn(f64, f64) -> [f64; 2],
+) {
+    let points = [[left, -10.0], [right, -10.0], [right, 400.0], [left, 400.0]];
+    let vertices = points.map(|[x, z]| ([x, z], uv(x, z))).to_vec();
+    canvas.draw(
+        &Mesh::indexed(vertices, vec![0, 1, 2, 0, 2, 3]).expect("two triangles"),
+        shader,
+        &sky(),
+    );
 }
 
 fn shader(clip_from_world: DMat4, texture: &str, filter: Filter, mode: AddressMode) -> Floor {
@@ -126,8 +140,10 @@ fn shader(clip_from_world: DMat4, texture: &str, filter: Filter, mode: AddressMo
 /// Bricks to the horizon.
 fn bricks(canvas: &mut Canvas, filter: Filter, bias: f64) {
     canvas.clear(&sky());
-    let clip_from_world = camera(dvec3(0.0, canvas.knobs.number("height"), -6.0), dvec3(0.6, 1.0, 0.0));
-    let shader = Floor { bias, ..shader(clip_from_world, "bricks.png", filter, AddressMode::Repeat) };
+    let clip_from_world =
+        camera(dvec3(0.0, canvas.knobs.number("height"), -6.0), dvec3(0.6, 1.0, 0.0));
+    let shader =
+        Floor { bias, ..shader(clip_from_world, "bricks.png", filter, AddressMode::Repeat) };
     floor(canvas, &shader, [-300.0, 300.0], |x, z| [x / 4.0, z / 4.0]);
 }
 
@@ -167,7 +183,9 @@ pub(super) fn address_modes(canvas: &mut Canvas) {
     for (i, mode) in (0..).zip(modes) {
         let left = -6.2 + 4.2 * f64::from(i);
         let shader = shader(clip_from_world, "letters.png", Filter::Trilinear, mode);
-        floor(canvas, &shader, [left, left + 3.8], |x, z| [(x - left - 1.1) / size, (z + 0.6) / size]);
+        floor(canvas, &shader, [left, left + 3.8], |x, z| {
+            [(x - left - 1.1) / size, (z + 0.6) / size]
+        });
     }
 }
 // ANCHOR_END: address_modes

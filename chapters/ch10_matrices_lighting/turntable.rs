@@ -104,7 +104,11 @@ impl Shader<8> for Surface<'_> {
         self.shade([x, y, z], [nx, ny, nz], self.texture.bilinear([u, v], AddressMode::Repeat))
     }
 
-    fn fragment_with_derivatives<R: Real>(&self, varyings: [R; 8], change: Derivatives<R, 8>) -> Shaded<R> {
+    fn fragment_with_derivatives<R: Real>(
+        &self,
+        varyings: [R; 8],
+        change: Derivatives<R, 8>,
+    ) -> Shaded<R> {
         let [x, y, z, nx, ny, nz, u, v] = varyings;
         let texel = match self.filter {
             "nearest" => self.texture.nearest([u, v], AddressMode::Repeat),

@@ -33,7 +33,8 @@ pub(super) const KNOBS: &[Knob] = &[
     ),
 ];
 
-const CAMERA: Frustum = Frustum { left: -1.6, right: 1.6, bottom: -1.2, top: 1.2, near: 2.0, far: 20.0 };
+const CAMERA: Frustum =
+    Frustum { left: -1.6, right: 1.6, bottom: -1.2, top: 1.2, near: 2.0, far: 20.0 };
 const CLAY: Material = Material {
     ambient: 0.12,
     diffuse: 0.9,
@@ -76,7 +77,10 @@ impl Shader<5> for Wall {
 
     fn vertex(&self, &[x, y]: &[f64; 2]) -> ClipVertex<5> {
         let view = (self.view_from_model * dvec3(x, y, 0.0).extend(1.0)).truncate();
-        ClipVertex { position: CAMERA.matrix() * view.extend(1.0), varyings: [view.x, view.y, view.z, x, y] }
+        ClipVertex {
+            position: CAMERA.matrix() * view.extend(1.0),
+            varyings: [view.x, view.y, view.z, x, y],
+        }
     }
 
     fn fragment<R: Real>(&self, [x, y, z, u, v]: [R; 5]) -> Shaded<R> {
@@ -103,8 +107,8 @@ pub(super) fn normal_mapped(canvas: &mut Canvas) {
     let mapped = assets::texture("bricks-normals.png").expect("an asset");
     for (side, normals) in [(-1.0, straight_up), (1.0, mapped)] {
         let place = translate(dvec3(1.52 * side, 0.0, 4.0)) * rotate_x_to_z(degrees(-25.0 * side));
-        let corners = vec![[-1.5, -1.6], [1.5, -1.6], [1.5, 1.6], [-1.5, 1.6]];
-        let mesh = Mesh::indexed(corners, vec![0, 1, 2, 0, 2, 3]).expect("two triangles");
+        let vertices = vec![[-1.5, -1.6], [1.5, -1.6], [1.5, 1.6], [-1.5, 1.6]];
+        let mesh = Mesh::indexed(vertices, vec![0, 1, 2, 0, 2, 3]).expect("two triangles");
         canvas.draw(&mesh, &Wall::new(place, normals, strength, lamp), &state);
     }
 }

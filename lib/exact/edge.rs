@@ -60,7 +60,8 @@ pub fn snap(position: DVec2) -> Option<Subpixel> {
 }
 
 // ANCHOR: edge_function
-/// On which side of an edge from a to b a point is, and how far: twice the area of the triangle a, b, p.
+/// On which side of an edge from a to b a point is, and how far: twice the area of the triangle a,
+/// b, p.
 ///
 /// ```text
 ///              b
@@ -69,8 +70,9 @@ pub fn snap(position: DVec2) -> Option<Subpixel> {
 ///           a
 /// ```
 ///
-/// In units of 1/256 × 1/256 pixel. Positive on the left of the edge. From point to point it changes linearly, so that
-/// the next pixel costs one addition. Source: J. Pineda, A parallel algorithm for polygon rasterization, 1988.
+/// In units of 1/256 × 1/256 pixel. Positive on the left of the edge. From point to point it
+/// changes linearly, so that the next pixel costs one addition. Source: J. Pineda, A parallel
+/// algorithm for polygon rasterization, 1988.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EdgeFunction {
     /// How much more it is 1/256 pixel farther to the right.
@@ -82,8 +84,8 @@ pub struct EdgeFunction {
 
 impl EdgeFunction {
     // ANCHOR: edge_value
-    /// The function of the edge from a to b: exact, if neither is farther than 2²⁴ from the origin along x or y, as
-    /// [`snap`] sees to. Beyond 2³⁰ it may overflow.
+    /// The function of the edge from a to b: exact, if neither is farther than 2²⁴ from the origin
+    /// along x or y, as [`snap`] sees to. Beyond 2³⁰ it may overflow.
     #[must_use]
     #[inline]
     pub fn new(a: Subpixel, b: Subpixel) -> Self {
@@ -91,8 +93,8 @@ impl EdgeFunction {
         Self { step_x, step_y, constant: -(step_x * a[0] + step_y * a[1]) }
     }
 
-    /// Its value at a point: exact up to 2³⁶ from the origin along x and y, which is farther than any picture goes. Beyond it
-    /// may overflow.
+    /// Its value at a point: exact up to 2³⁶ from the origin along x and y, which is farther than
+    /// any picture goes. Beyond it may overflow.
     #[must_use]
     #[inline]
     pub fn at(&self, [x, y]: Subpixel) -> i64 {
@@ -100,9 +102,11 @@ impl EdgeFunction {
     }
     // ANCHOR_END: edge_value
 
-    /// Whether points on the edge itself belong to the triangle on its left: it is a top edge or a left edge.
+    /// Whether points on the edge itself belong to the triangle on its left: it is a top edge or a
+    /// left edge.
     ///
-    /// Counter-clockwise round the triangle, a top edge runs to the left, and a left edge runs down.
+    /// Counter-clockwise round the triangle, a top edge runs to the left, and a left edge runs
+    /// down.
     ///
     /// ```text
     ///             top
@@ -124,16 +128,18 @@ impl EdgeFunction {
         value >= self.least()
     }
 
-    /// The least value on the triangle's side: whole numbers are positive from 1 on, and 0 is on the edge itself.
+    /// The least value on the triangle's side: whole numbers are positive from 1 on, and 0 is on
+    /// the edge itself.
     #[inline]
     pub(crate) fn least(&self) -> i64 {
         if self.is_top_left() { 0 } else { 1 }
     }
 
-    /// Which of some columns of a row are on the triangle's side, if the function has this value in the first of them.
+    /// Which of some columns of a row are on the triangle's side, if the function has this value in
+    /// the first of them.
     ///
-    /// The nth column after the first has value + n · step, and is on that side if n · step ≥ least − value: from some
-    /// column on where the function grows, up to some column where it falls.
+    /// The nth column after the first has value + n · step, and is on that side if n · step ≥ least
+    /// − value: from some column on where the function grows, up to some column where it falls.
     #[inline]
     fn columns(&self, columns: Range<i32>, value: i64) -> Range<i32> {
         let [start, end] = [columns.start, columns.end].map(i64::from);
@@ -144,7 +150,7 @@ impl EdgeFunction {
             0 => start..end,
             _ => start..start + (-missing).div_euclid(-step) + 1,
         };
-        let [first, end] = [covered.start, covered.end].map(|column| column.max(start).min(end) as i32);
+        let [first, end] = [covered.start, covered.end].map(|it| it.max(start).min(end) as i32);
         first..end
     }
 }
@@ -172,7 +178,8 @@ pub(crate) fn gradients_between<R: Real>(vertices: [Subpixel; 3]) -> WeightGradi
 pub struct Coverage {
     /// The vertices, rounded to 1/256 pixel.
     pub vertices: [Subpixel; 3],
-    /// Each edge belongs to the vertex opposite to it, and has the triangle on its left, whichever way it winds.
+    /// Each edge belongs to the vertex opposite to it, and has the triangle on its left, whichever
+    /// way it winds.
     pub edges: [EdgeFunction; 3],
     /// Twice the area, positive; the sum of the three edge functions anywhere.
     pub twice_area: i64,
@@ -181,8 +188,8 @@ pub struct Coverage {
 }
 
 impl Coverage {
-    /// Screen space, in pixels → coverage; `None` if there is nothing to draw: no area, or a vertex that is not finite or
-    /// too far away.
+    /// Screen space, in pixels → coverage; `None` if there is nothing to draw: no area, or a vertex
+    /// that is not finite or too far away.
     #[must_use]
     #[inline]
     pub fn new(triangle: [DVec2; 3]) -> Option<Self> {
@@ -209,20 +216,22 @@ impl Coverage {
         self.edges.map(|edge| edge.at(point))
     }
 
-    /// Whether a point where the edge functions have these values belongs to the triangle: three signs that agree.
+    /// Whether a point where the edge functions have these values belongs to the triangle: three
+    /// signs that agree.
     #[must_use]
     #[inline]
     pub fn covers(&self, values: [i64; 3]) -> bool {
-        self.edges[0].covers(values[0]) && self.edges[1].covers(values[1]) && self.edges[2].covers(values[2])
+        let [a, b, c] = &self.edges;
+        a.covers(values[0]) && b.covers(values[1]) && c.covers(values[2])
     }
 
-    /// How much the second and the third vertex weigh where the edge functions have these values; the first has the
-    /// rest of 1. Outside the triangle, weights are negative.
+    /// How much the second and the third vertex weigh where the edge functions have these values;
+    /// the first has the rest of 1. Outside the triangle, weights are negative.
     #[must_use]
     #[inline]
     pub fn weights<R: Scalar>(&self, [_, second, third]: [i64; 3]) -> [R; 2] {
         // Whole numbers of up to 53 bits are exact in `f64`; `of` rounds once.
-        let [second, third, area] = [second, third, self.twice_area].map(|value| R::of(value as f64));
+        let [second, third, area] = [second, third, self.twice_area].map(|it| R::of(it as f64));
         let one_over_area = R::of(1.0) / area;
         [second * one_over_area, third * one_over_area]
     }
@@ -252,7 +261,8 @@ impl Coverage {
     #[inline]
     pub fn bounding_box(&self, rect: Rect) -> Rect {
         let [xs, ys] = [0, 1].map(|axis| self.vertices.map(|vertex| vertex[axis]));
-        // The first center that is not below the lowest, and the one after the last that is not above the highest.
+        // The first center that is not below the lowest, and the one after the last that is not
+        // above the highest.
         let first = |values: [i64; 3]| {
             let lowest = values[0].min(values[1]).min(values[2]);
             (lowest - SUBPIXELS / 2 + SUBPIXELS - 1).div_euclid(SUBPIXELS) as i32
@@ -264,8 +274,8 @@ impl Coverage {
         Rect { left: first(xs), bottom: first(ys), right: end(xs), top: end(ys) }.intersection(rect)
     }
 
-    /// The pixels of the scissor whose centers are covered, row by row from the bottom, with the values of the edge
-    /// functions there.
+    /// The pixels of the scissor whose centers are covered, row by row from the bottom, with the
+    /// values of the edge functions there.
     pub fn pixels<W: Into<Scissor>>(
         &self,
         scissor: W,
@@ -280,8 +290,8 @@ impl Coverage {
         })
     }
 
-    /// All pixels of the scissor, covered or not, row by row from the bottom, with the values of the edge functions at
-    /// their centers.
+    /// All pixels of the scissor, covered or not, row by row from the bottom, with the values of
+    /// the edge functions at their centers.
     pub fn all_pixels<W: Into<Scissor>>(
         &self,
         scissor: W,
@@ -295,7 +305,8 @@ impl Coverage {
         })
     }
 
-    /// The covered ones of some columns of a row, from left to right, with the values of the edge functions there.
+    /// The covered ones of some columns of a row, from left to right, with the values of the edge
+    /// functions there.
     #[inline]
     fn row(&self, columns: Range<i32>, y: i32) -> impl Iterator<Item = (i32, [i64; 3])> + use<> {
         let covered = self.covered_columns(columns, y);

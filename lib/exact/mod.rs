@@ -95,13 +95,17 @@ impl<R: Scalar> Rasterizer for Exact<R> {
 /// How far beyond the border of the view a vertex may be, in NDC.
 pub(crate) const GUARD_BAND: f64 = 2.0;
 
+/// A polygon of NDC: a triangle, and what cuts add to it.
+type CutTriangle<const N: usize> = ArrayVec<NdcVertex<N>, 9>;
+
 #[inline]
 pub(crate) fn is_in_guard_band<const N: usize>(vertex: &NdcVertex<N>) -> bool {
     vertex.w > 0.0 && vertex.position.truncate().abs().max_element() <= GUARD_BAND
 }
 
-/// The part of a triangle in the guard band: only for pipelines that do not clip to the view volume.
-pub(crate) fn cut_to_guard_band<const N: usize>(triangle: [NdcVertex<N>; 3]) -> ArrayVec<NdcVertex<N>, 9> {
+/// The part of a triangle in the guard band: only for pipelines that do not clip to the view
+/// volume.
+pub(crate) fn cut_to_guard_band<const N: usize>(triangle: [NdcVertex<N>; 3]) -> CutTriangle<N> {
     const PLANES: [Plane; 4] = [
         Plane::homogeneous(dvec4(1.0, 0.0, 0.0, GUARD_BAND)),
         Plane::homogeneous(dvec4(-1.0, 0.0, 0.0, GUARD_BAND)),
@@ -133,7 +137,8 @@ fn draw_triangle<R: Scalar, S: Shader<N>, P: Probe + ?Sized, const N: usize>(
     // 5. Culling, by the signed area on the screen.
     let signed_area = coverage.as_ref().map_or(0.0, Coverage::signed_area);
     probe.piece(&|| Piece { vertices: triangle.each_ref().map(RecordedVertex::from), signed_area });
-    let Some(coverage) = coverage.filter(|_| !state.cull.culls(signed_area, state.front_face)) else {
+    let is_culled = state.cull.culls(signed_area, state.front_face);
+    let Some(coverage) = coverage.filter(|_| !is_culled) else {
         probe.culled();
         return;
     };
@@ -143,17 +148,18 @@ fn draw_triangle<R: Scalar, S: Shader<N>, P: Probe + ?Sized, const N: usize>(
     let step = varyings.change(coverage.weight_step());
     let gradients = coverage.weight_gradients();
 
-    // 7. Rasterization: which pixels, and which values. Each fragment goes through the stages 8 to 10.
+    // 7. Rasterization: which pixels, and which values. Each fragment goes through stages 8 to 10.
     let area = coverage.bounding_box(scissor.rect);
     let _announced = Announced::new(scissor, &coverage);
     let mut stages = FragmentStages { shader, state, rounding: Rounding::Nearest, target, probe };
     for y in area.rows() {
         let columns = coverage.covered_columns(area.columns(), y);
-        let start = varyings.linear_at(coverage.weights(coverage.edge_values(center(columns.start, y))));
+        let values = coverage.edge_values(center(columns.start, y));
+        let start = varyings.linear_at(coverage.weights(values));
         for (count, x) in columns.enumerate() {
             let linear = start.moved(&step, R::of(count as f64));
             let point = linear.multiplied(state.interpolation);
-            stages.draw((x, y), point, linear.depth, |point| varyings.derivatives(point, gradients));
+            stages.draw((x, y), point, linear.depth, |it| varyings.derivatives(it, gradients));
         }
     }
 }

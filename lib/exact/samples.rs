@@ -139,7 +139,7 @@ impl<'a> Samples<'a> {
         let mut pixels = self.colors.chunks_exact(count);
         for y in self.rect.rows() {
             for (x, samples) in self.rect.columns().zip(&mut pixels) {
-                let sum: [f64; 3] = from_fn(|k| samples.iter().map(|color| color.to_f64()[k]).sum());
+                let sum: [f64; 3] = from_fn(|k| samples.iter().map(|it| it.to_f64()[k]).sum());
                 picture.set(x, y, Rounding::Nearest.color(sum.map(|sum| sum / count as f64)));
             }
         }

@@ -399,7 +399,7 @@ fn bricks_normals() -> Framebuffer {
     picture
 }
 
-/// Wood that can be laid side by side from left to right: upright grain.
+/// Wood that can be laid side by side from left to right: vertical grain.
 fn wood() -> Framebuffer {
     let mut picture = Framebuffer::new(128, 128);
     for y in picture.rect().rows() {

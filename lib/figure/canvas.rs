@@ -148,7 +148,8 @@ impl Canvas {
     }
 
     // ANCHOR: draw
-    /// Draws a mesh with the pipeline, into the viewport of the state or else into that of the canvas.
+    /// Draws a mesh with the pipeline, into the viewport of the state or else into that of the
+    /// canvas.
     pub fn draw<S: Shader<N>, const N: usize>(
         &mut self,
         mesh: &Mesh<S::Attributes>,
@@ -161,13 +162,13 @@ impl Canvas {
         let probe: &dyn Probe = self.observer.as_deref().map_or(&Silent, |observer| observer);
         match &mut self.drawing {
             Drawing::Scanline(target) => draw(mesh, shader, state, &Scanline, target, probe),
-            Drawing::Exact(target) => draw(mesh, shader, state, &Exact::<f64>::new(), target, probe),
+            Drawing::Exact(target) => draw(mesh, shader, state, &Exact::new(), target, probe),
             #[cfg(feature = "tiled")]
             Drawing::Tiled(target, tiled) if self.observer.is_none() => {
                 tiled.draw_mesh(mesh, shader, state, target);
             }
             #[cfg(feature = "tiled")]
-            Drawing::Tiled(target, _) => draw(mesh, shader, state, &Exact::<f32>::new(), target, probe),
+            Drawing::Tiled(target, _) => draw(mesh, shader, state, &Exact::new(), target, probe),
         }
     }
     // ANCHOR_END: draw

@@ -66,7 +66,7 @@ fn payload_at<P: Payload>(
     half.step(carried, walk, screen, |span, ends| {
         if span.y == y {
             let [from, to] = row_payload(ends);
-            span.step(from, to, walk.limit, |column, here| {
+            span.step(from, to, walk.clamp, |column, here| {
                 if column == x {
                     found.push(([span.start, span.end], [ends[0], ends[1], here]));
                 }

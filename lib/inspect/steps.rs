@@ -99,8 +99,8 @@ impl fmt::Display for TooManySteps {
 
 impl std::error::Error for TooManySteps {}
 
-/// The corners of a piece on the screen, if the primitive is a triangle.
-fn corners_of(primitive: &Primitive) -> Option<[DVec2; 3]> {
+/// The vertices of a piece on the screen, if the primitive is a triangle.
+fn vertices_of(primitive: &Primitive) -> Option<[DVec2; 3]> {
     match primitive {
         Primitive::Triangle(triangle) => Some(triangle.positions),
         Primitive::Coverage(coverage) => {
@@ -188,8 +188,8 @@ impl Observer for Recorder {
             Event::Begun(primitive) => {
                 record.begin();
                 // Its first piece tells where on the screen the polygon is.
-                if let Some((triangle, corners)) = record.clipped.take().zip(corners_of(&primitive)) {
-                    record.story.outline(&triangle, corners);
+                if let Some((triangle, vertices)) = record.clipped.take().zip(vertices_of(&primitive)) {
+                    record.story.outline(&triangle, vertices);
                 }
             }
             _ => {}
@@ -209,7 +209,7 @@ impl Probe for Recorder {
 
 impl Story {
     /// The polygon after each plane that cut something off.
-    fn outline(&mut self, triangle: &Assembled, corners: [DVec2; 3]) {
+    fn outline(&mut self, triangle: &Assembled, vertices: [DVec2; 3]) {
         if self.outlines.len() > MOST_OUTLINES {
             return;
         }
@@ -228,7 +228,8 @@ impl Story {
         // The first three vertices are known in NDC and on the screen: that is enough to know where all others are.
         let flat = |i: usize| perspective_divide(polygon[i].position).truncate().extend(1.0);
         let ndc = DMat3::from_cols(flat(0), flat(1), flat(2));
-        let screen = DMat3::from_cols(corners[0].extend(1.0), corners[1].extend(1.0), corners[2].extend(1.0));
+        let screen =
+            DMat3::from_cols(vertices[0].extend(1.0), vertices[1].extend(1.0), vertices[2].extend(1.0));
         let screen_from_ndc = screen * ndc.inverse();
         let place = |position: glam::DVec4| {
             let seen: DVec3 = screen_from_ndc * perspective_divide(position).truncate().extend(1.0);

@@ -50,7 +50,7 @@ use self::text::PlainText;
 pub struct ModelVertex {
     /// Model space, left-handed.
     pub position: DVec3,
-    /// The direction that stands upright on the surface; of length 1.
+    /// The direction that is perpendicular to the surface; of length 1.
     pub normal: DVec3,
     /// Texture coordinates, (0, 0) at the picture's lower left.
     pub uv: [f64; 2],

@@ -28,7 +28,7 @@ use glam::DVec3;
 /// Where more faces than this meet, some of them sheets, each keeps its own normal: no model that is meant has so many.
 const MAX_AROUND: usize = 128;
 
-/// A vector upright on a polygon, as long as twice its area; outwards if the polygon runs counter-clockwise.
+/// A vector perpendicular to a polygon, as long as twice its area; outwards if the polygon runs counter-clockwise.
 ///
 /// ```text
 ///          c
@@ -54,7 +54,7 @@ pub(super) fn face_normal(corners: &[DVec3]) -> DVec3 {
     direction(area_vector(corners)).unwrap_or(DVec3::NEG_Z)
 }
 
-/// The angle at `b` inside a polygon that `normal` is upright on, in 0..2π.
+/// The angle at `b` inside a polygon that `normal` is perpendicular to, in 0..2π.
 fn angle([a, b, c]: [DVec3; 3], normal: DVec3) -> f64 {
     let (to_next, to_last) = (c - b, a - b);
     let cross = to_last.cross(to_next);

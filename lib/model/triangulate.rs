@@ -24,7 +24,7 @@ pub(super) const MAX_WORK: u64 = 1 << 28;
 /// Cuts a polygon of three corners or more into triangles, and says whether that is right everywhere: a polygon that
 /// crosses itself or has no area, or for which `work` does not last, becomes a fan all the same.
 ///
-/// `area` is upright on the polygon, as [`area_vector`](super::normals::area_vector) gives it (its length does not matter).
+/// `area` is perpendicular to the polygon, as [`area_vector`](super::normals::area_vector) gives it (its length does not matter).
 /// Corners are compared along the two axes that it is least parallel to, so that no coordinate is rounded.
 pub(super) fn triangulate(
     corners: &[DVec3],

@@ -56,7 +56,7 @@ pub const PROGRAMS: [Program; 11] = [
     Program {
         name: "ch03_barycentric",
         question: "The vertices have values: what value does a pixel between them get?",
-        variants: &["weights", "areas", "rgb", "gray", "texture", "spikes", "limited-edges", "limited"],
+        variants: &["weights", "areas", "rgb", "gray", "texture", "spikes", "clamped-edges", "clamped"],
         has_model: false,
         has_texture: false,
     },
@@ -96,6 +96,8 @@ pub const PROGRAMS: [Program; 11] = [
             "depth",
             "w-buffer",
             "steps",
+            "z-fighting",
+            "reversed",
             "uncleared",
             "cleared",
         ],

@@ -2,6 +2,7 @@
 //!
 //! - Pictures of `tests/snapshots` are copied into the book, and centered.
 //! - Below `<!-- live -->` a picture of a chapter's variant becomes a live figure, if `docs/live/build` has run.
+//! - Below `<!-- crop X Y WIDTH HEIGHT -->` a part of a picture is shown, counted from its upper left, and never scaled.
 //! - Drawings (`figures/NAME.svg`) are put into the page, where they take the colors of its theme.
 //! - A note for those who read the page on a code host, where nothing is put in, is left out.
 //! - Other files of the repository that a page links to become pages with line numbers.
@@ -43,6 +44,9 @@ const HOST_NOTE: &str = "<!-- on a code host -->";
 /// What stands above a picture that is to be live. On a code host it is a comment.
 const LIVE: &str = "<!-- live -->";
 
+/// What stands above a picture of which a part is to be shown; four numbers follow.
+const CROP: &str = "<!-- crop ";
+
 /// The chapters, compiled for pages.
 const MODULE: &str = "target/live/rasterbook.wasm";
 
@@ -54,12 +58,21 @@ struct Work {
     page: PathBuf,
     /// Whether the next picture is to be live.
     is_live: bool,
+    /// The part of the next picture that is to be shown: the column and the row of its upper left, width and height.
+    crop: Option<[u32; 4]>,
     errors: Errors,
 }
 
 impl Work {
     fn new(source: PathBuf) -> Self {
-        Self { source, copies: BTreeSet::new(), page: PathBuf::new(), is_live: false, errors: Vec::new() }
+        Self {
+            source,
+            copies: BTreeSet::new(),
+            page: PathBuf::new(),
+            is_live: false,
+            crop: None,
+            errors: Vec::new(),
+        }
     }
 
     fn items(&mut self, items: &mut Value) {
@@ -90,6 +103,13 @@ impl Work {
             }
             if line == LIVE {
                 self.is_live = true;
+                continue;
+            }
+            if let Some(part) = line.strip_prefix(CROP) {
+                self.crop = part_of(part);
+                if self.crop.is_none() {
+                    self.error(&format!("{line}: not four numbers"));
+                }
                 continue;
             }
             let trimmed = line.trim_start();
@@ -208,6 +228,16 @@ impl Work {
             self.error(&format!("no picture {target}"));
             return String::new();
         };
+        if let Some([x, y, part_width, part_height]) = self.crop.take() {
+            if x + part_width > width || y + part_height > height {
+                self.error(&format!("{target} has no such part"));
+            }
+            let target = self.target(target);
+            return format!(
+                "<figure class=\"crop\"><a href=\"{target}\"><img src=\"{target}\" alt=\"{alternative}\" \
+                 style=\"width: {part_width}px; height: {part_height}px; object-position: -{x}px -{y}px\"></a></figure>"
+            );
+        }
         let live = if std::mem::take(&mut self.is_live) { self.live(target) } else { None };
         let class = live.unwrap_or_else(|| picture_class(target, width));
         let target = self.target(target);
@@ -288,6 +318,13 @@ impl Work {
             }
         }
     }
+}
+
+/// The four numbers of `X Y WIDTH HEIGHT -->`.
+fn part_of(text: &str) -> Option<[u32; 4]> {
+    let numbers: Option<Vec<u32>> =
+        text.strip_suffix("-->")?.split_whitespace().map(|number| number.parse().ok()).collect();
+    numbers?.try_into().ok()
 }
 
 /// The chapter, the variant and the frame that a picture shows; `None` if it is magnified, or beside another one.
@@ -401,6 +438,14 @@ mod tests {
         let code = long_code(name);
         assert_eq!(code.matches("<wbr>").count(), name.matches('_').count(), "{code}");
         assert!(!code.contains('_') && !code.contains("<span>"), "{code}");
+    }
+
+    #[test]
+    fn a_part_is_four_numbers() {
+        assert_eq!(part_of("360 20 260 320 -->"), Some([360, 20, 260, 320]));
+        assert_eq!(part_of("360 20 260 -->"), None);
+        assert_eq!(part_of("360 20 260 -5 -->"), None);
+        assert_eq!(part_of("360 20 260 320"), None);
     }
 
     #[test]

@@ -1,5 +1,5 @@
-//! Whether the pages as they are written keep to their own rules: words that must not come back, and histories of the
-//! pixel that is announced. How long each page is, is printed.
+//! Whether the pages as they are written keep to their own rules: words that must not come back, histories of the pixel
+//! that is announced, and listings that are not too wide. How long each page is, is printed.
 
 use std::path::Path;
 
@@ -14,6 +14,8 @@ pub fn run() -> Errors {
         let text = read(&page);
         errors.extend(words(&text).into_iter().map(|what| format!("{name}:{what}")));
         errors.extend(histories(&text, &page).into_iter().map(|what| format!("{name}:{what}")));
+        errors.extend(wide_lines(&text, &page).into_iter().map(|what| format!("{name}:{what}")));
+        errors.extend(words_of_listings(&text, &page).into_iter().map(|what| format!("{name}:{what}")));
         let length = Length::of(&text, &page);
         println!("{name}: {length}");
     }
@@ -78,6 +80,27 @@ fn words(text: &str) -> Errors {
     errors
 }
 
+/// Which of them are in the comments of the code that a page includes; the line is that of the page.
+fn words_of_listings(text: &str, page: &Path) -> Errors {
+    let mut errors = Vec::new();
+    for (index, line) in text.lines().enumerate() {
+        let Some((file, lines)) = listing(line, page) else { continue };
+        for what in words(&comments(&lines)) {
+            let (_, what) = what.split_once(": ").unwrap_or_default();
+            errors.push(format!("{}: a comment of {file}: {what}", index + 1));
+        }
+    }
+    errors
+}
+
+/// What stands in the comments of code, a line for each.
+fn comments(lines: &[String]) -> String {
+    let comment = |line: &String| {
+        line.split_once("//").map(|(_, text)| text.trim_start_matches(['/', '!']).trim().to_owned())
+    };
+    lines.iter().filter_map(comment).collect::<Vec<_>>().join("\n")
+}
+
 /// A text without its code; the lines stay.
 fn prose(text: &str) -> String {
     let mut result = String::new();
@@ -129,6 +152,45 @@ fn pixel(line: &str) -> Option<String> {
     Some(pixel.replace(' ', ""))
 }
 
+/// So many characters of a listing fit beside a table of contents.
+const WIDEST: usize = 100;
+
+/// Code that is folded on its pages, and as wide as the library allows.
+const MAY_BE_WIDER: &str = "../../lib/tiled/";
+
+/// Lines of listings that are too wide, on the page itself or in what it includes.
+fn wide_lines(text: &str, page: &Path) -> Errors {
+    let mut errors = Vec::new();
+    let mut is_rust = false;
+    for (index, line) in text.lines().enumerate() {
+        if let Some(language) = line.trim_start().strip_prefix("```") {
+            is_rust = !is_rust && language.starts_with("rust");
+        }
+        let (from, lines) = match listing(line, page) {
+            Some((file, _)) if file.starts_with(MAY_BE_WIDER) => continue,
+            Some((file, lines)) => (file, lines),
+            None if is_rust => (String::new(), vec![line.to_owned()]),
+            None => continue,
+        };
+        for line in lines {
+            let width = line.chars().count();
+            if width > WIDEST {
+                errors.push(format!("{}: {from}: {width} characters, not {WIDEST}: {line}", index + 1));
+            }
+        }
+    }
+    errors
+}
+
+/// The file that a line of a page includes code from, and that code.
+fn listing(line: &str, page: &Path) -> Option<(String, Vec<String>)> {
+    let (_, include) = line.split_once("{{#include ")?;
+    let (file, anchor) = include.trim_end_matches("}}").split_once(".rs:")?;
+    let file = format!("{file}.rs");
+    let source = read(&page.with_file_name(&file));
+    Some((file, anchored(&source, anchor).map(ToOwned::to_owned).collect()))
+}
+
 /// How long a page is: a sitting has two to three thousand words and some 120 lines of listings.
 #[derive(Default)]
 struct Length {
@@ -149,10 +211,7 @@ impl Length {
         for line in text.lines() {
             depth += line.matches("<details").count();
             depth -= line.matches("</details>").count().min(depth);
-            let Some((_, include)) = line.split_once("{{#include ") else { continue };
-            let Some((file, anchor)) = include.trim_end_matches("}}").split_once(".rs:") else { continue };
-            let source = read(&page.with_file_name(format!("{file}.rs")));
-            for line in anchored(&source, anchor) {
+            for line in listing(line, page).into_iter().flat_map(|(_, lines)| lines) {
                 *if depth > 0 { &mut length.folded } else { &mut length.lines } += 1;
                 length.longest = length.longest.max(line.chars().count());
             }
@@ -200,12 +259,30 @@ mod tests {
     }
 
     #[test]
+    fn words_are_found_in_comments_of_code() {
+        let code =
+            ["/// It goes", "/// ahead, and `aslant`.", "let stairs = 1; // upright", "let evenly = 2;"];
+        let found = words(&comments(&code.map(ToOwned::to_owned)));
+        assert_eq!(found.len(), 2, "{found:?}");
+        assert!(found[0].contains("upright") && found[1].contains("goes ahead"), "{found:?}");
+    }
+
+    #[test]
     fn a_history_is_of_the_pixel_that_is_announced() {
         let page = Path::new("page.md");
         let told =
             "`floor --inspect 3,4`\n```text\nch01 floor\npixel (3, 4), y up; row 5 of the image file\n```\n";
         assert_eq!(histories(told, page), Errors::new());
         assert_eq!(histories(&told.replace("3,4", "3,5"), page).len(), 1);
+    }
+
+    #[test]
+    fn listings_are_not_too_wide() {
+        let page = Path::new("page.md");
+        let code =
+            |width: usize| format!("```rust,ignore\n{}\n```\n{}\n", "x".repeat(width), "y".repeat(300));
+        assert_eq!(wide_lines(&code(100), page), Errors::new());
+        assert_eq!(wide_lines(&code(101), page).len(), 1);
     }
 
     #[test]
