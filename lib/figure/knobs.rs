@@ -171,6 +171,24 @@ impl Knob {
         }
     }
 
+    /// A value of its kind, brought into its range; `None` for what has no place there. `size` is that of the picture.
+    fn clamped(&self, value: Value, size: (u32, u32)) -> Option<Value> {
+        match (self.kind, value) {
+            (Kind::Number { range: [low, high], .. }, Value::Number(number)) if !number.is_nan() => {
+                Some(Value::Number(number.clamp(low, high)))
+            }
+            (Kind::Whole { range: [low, high], .. }, Value::Whole(number)) => {
+                Some(Value::Whole(number.clamp(low, high)))
+            }
+            (Kind::Choice(names), Value::Choice(index)) => (index < names.len()).then_some(value),
+            (Kind::Switch(_), Value::Switch(_)) | (Kind::Color(_), Value::Color(_)) => Some(value),
+            (Kind::Point(_), Value::Point(point)) if !point.is_nan() => {
+                Some(Value::Point(in_picture(point, size)))
+            }
+            _ => None,
+        }
+    }
+
     /// Its kind and range in words, such as `a number, 0 to 80 °`.
     #[must_use]
     pub fn range(&self) -> String {
@@ -361,13 +379,12 @@ impl Knobs {
         Ok((index, parsed))
     }
 
-    /// Sets a knob to a value of its kind; a point is brought into the picture. Does nothing if no knob has this name.
+    /// Sets a knob to a value, which is brought into its range, a point into the picture. Does nothing if no knob has this
+    /// name, if the value is of another kind, or if it is no number.
     pub fn put(&mut self, name: &str, value: Value) {
-        let value = match value {
-            Value::Point(point) => Value::Point(in_picture(point, self.size)),
-            other => other,
-        };
-        if let Some(index) = self.knobs.iter().position(|knob| knob.name == name) {
+        if let Some(index) = self.knobs.iter().position(|knob| knob.name == name)
+            && let Some(value) = self.knobs[index].clamped(value, self.size)
+        {
             self.values[index] = value;
         }
     }
@@ -478,6 +495,29 @@ mod tests {
         Knob::point("p", [3.5, 4.0], "-"),
         Knob::color("paint", Color::RED, "-"),
     ];
+
+    #[test]
+    fn what_is_put_stays_in_range_and_of_its_kind() {
+        let put = |name: &str, value| {
+            let mut knobs = Knobs::new(KNOBS, (64, 48));
+            knobs.put(name, value);
+            knobs.changed().join(" ")
+        };
+        assert_eq!(put("tilt", Value::Number(1e300)), "tilt=80");
+        assert_eq!(put("tilt", Value::Number(f64::NEG_INFINITY)), "tilt=0");
+        assert_eq!(put("bits", Value::Whole(i32::MIN)), "bits=1");
+        assert_eq!(put("p", Value::Point(dvec2(-9.0, f64::INFINITY))), "p=0,48");
+        let ignored = [
+            ("tilt", Value::Number(f64::NAN)),
+            ("tilt", Value::Whole(1)),
+            ("rule", Value::Choice(2)),
+            ("p", Value::Point(dvec2(f64::NAN, 1.0))),
+            ("other", Value::Switch(false)),
+        ];
+        for (name, value) in ignored {
+            assert_eq!(put(name, value), "", "{name} {value:?}");
+        }
+    }
 
     #[test]
     fn texts_are_values_or_refused() {
