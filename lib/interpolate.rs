@@ -17,7 +17,7 @@ use glam::DVec2;
 
 use crate::area::twice_signed_area;
 use crate::payload::{Payload, StepClamp, Walk};
-use crate::real::{Mask, Real};
+use crate::real::{Mask, Real, each};
 use crate::rect::Rect;
 use crate::scanline::{Edge, Half, Split, split};
 use crate::scissor::Scissor;
@@ -50,8 +50,13 @@ pub fn barycentric_weights(p: DVec2, [a, b, c]: [DVec2; 3]) -> [f64; 3] {
 
 /// The values at the parameter t between a (t = 0) and b (t = 1), changing linearly: (b − a) · t + a. Book, section 3.1.
 #[must_use]
+#[inline(always)]
 pub fn linear<R: Real, const N: usize>(a: [R; N], b: [R; N], t: R) -> [R; N] {
-    from_fn(|i| (b[i] - a[i]) * t + a[i])
+    each(
+        a,
+        #[inline(always)]
+        |i, a| (b[i] - a) * t + a,
+    )
 }
 
 /// A vertex of a triangle on the screen.

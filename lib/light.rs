@@ -1,7 +1,8 @@
 //! Chapters 10 and 11: light. How bright a surface is at a point, from its normal, the direction to the light, and the eye.
 //!
 //! Called by fragment shaders (or, for Gouraud shading, by vertex shaders); all vectors are of length 1 and in one
-//! space, whichever that is. Everything is written for any number type.
+//! space, whichever that is. Everything is written for any number type. (What is long is inlined for speed, but not in
+//! development builds, which would take longer to compile.)
 //!
 //! ```
 //! use rasterbook::light::{dot, lambert, normalize};
@@ -13,26 +14,42 @@
 //! assert_eq!(dot(normal, normal), 1.0);
 //! ```
 
-use std::array::from_fn;
-
-use crate::real::Real;
+use crate::real::{Real, each};
 
 /// A vector in any space.
 type Vector<R> = [R; 3];
 
 /// a · b.
 #[must_use]
-#[inline]
+#[inline(always)]
 pub fn dot<R: Real>(a: Vector<R>, b: Vector<R>) -> R {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// The vector of length 1 in the same direction; not finite for the zero vector.
 #[must_use]
-#[inline]
+#[inline(always)]
 pub fn normalize<R: Real>(v: Vector<R>) -> Vector<R> {
     let length = dot(v, v).sqrt();
-    v.map(|component| component / length)
+    [v[0] / length, v[1] / length, v[2] / length]
+}
+
+/// v · s.
+#[inline(always)]
+fn scale<R: Real>(v: Vector<R>, s: R) -> Vector<R> {
+    [v[0] * s, v[1] * s, v[2] * s]
+}
+
+/// a + b.
+#[inline(always)]
+fn add<R: Real>(a: Vector<R>, b: Vector<R>) -> Vector<R> {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+/// a − b.
+#[inline(always)]
+fn subtract<R: Real>(a: Vector<R>, b: Vector<R>) -> Vector<R> {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
 /// The direction in which light from the direction `to_light` leaves a mirror: 2 (n·l) n − l.
@@ -47,10 +64,9 @@ pub fn normalize<R: Real>(v: Vector<R>) -> Vector<R> {
 ///
 /// Source: fourth note, Phong model.
 #[must_use]
-#[inline]
+#[inline(always)]
 pub fn reflect<R: Real>(normal: Vector<R>, to_light: Vector<R>) -> Vector<R> {
-    let twice = R::of(2.0) * dot(normal, to_light);
-    from_fn(|i| twice * normal[i] - to_light[i])
+    subtract(scale(normal, R::of(2.0) * dot(normal, to_light)), to_light)
 }
 
 // ANCHOR: lambert
@@ -64,7 +80,7 @@ pub fn reflect<R: Real>(normal: Vector<R>, to_light: Vector<R>) -> Vector<R> {
 ///       ───────────────                             ────────────────────
 /// ```
 #[must_use]
-#[inline]
+#[inline(always)]
 pub fn lambert<R: Real>(normal: Vector<R>, to_light: Vector<R>) -> R {
     dot(normal, to_light).max(R::of(0.0))
 }
@@ -72,7 +88,7 @@ pub fn lambert<R: Real>(normal: Vector<R>, to_light: Vector<R>) -> R {
 
 /// How much of a point light's intensity arrives at a distance: 1 / r². Source: fourth note, Lambert model.
 #[must_use]
-#[inline]
+#[inline(always)]
 pub fn attenuation<R: Real>(distance: R) -> R {
     R::of(1.0) / (distance * distance)
 }
@@ -84,7 +100,7 @@ pub fn attenuation<R: Real>(distance: R) -> R {
 /// Where the angle between r and v passes 90° the highlight is cut off, which shows at small
 /// exponents. Source: fourth note, Phong model.
 #[must_use]
-#[inline]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub fn phong<R>(normal: Vector<R>, to_light: Vector<R>, to_eye: Vector<R>, exponent: f64) -> R
 where
     R: Real,
@@ -95,12 +111,12 @@ where
 /// The highlight of Blinn–Phong: max(0, n·h)^p, h half-way between light and eye. It has no cut-off
 /// while both are above the surface. Source: fourth note, Blinn–Phong model.
 #[must_use]
-#[inline]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub fn blinn_phong<R>(normal: Vector<R>, to_light: Vector<R>, to_eye: Vector<R>, exponent: f64) -> R
 where
     R: Real,
 {
-    let half = normalize(from_fn(|i| to_light[i] + to_eye[i]));
+    let half = normalize(add(to_light, to_eye));
     power(dot(normal, half).max(R::of(0.0)), exponent)
 }
 // ANCHOR_END: specular
@@ -112,7 +128,7 @@ const LARGEST_WHOLE: f64 = 1024.0;
 ///
 /// A whole exponent takes a few multiplications, by the squares that its bits name, x⁵ = x · (x²)²: a small part of the
 /// time of a power in general, and the same to some roundings.
-#[inline]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn power<R: Real>(base: R, exponent: f64) -> R {
     let mut left = exponent as u32;
     if f64::from(left) != exponent || exponent > LARGEST_WHOLE {
@@ -145,9 +161,12 @@ fn power<R: Real>(base: R, exponent: f64) -> R {
 /// The axes are of length 1 and in any space; the normal is in the same. Source: first note (a
 /// normal map on a quad).
 #[must_use]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub fn mapped_normal<R: Real>(texel: Vector<R>, [t, b, n]: [Vector<R>; 3]) -> Vector<R> {
-    let [x, y, z] = texel.map(|channel| channel / R::of(127.5) - R::of(1.0));
-    normalize(from_fn(|i| t[i] * x + b[i] * y + n[i] * z))
+    let one = R::of(1.0);
+    let [x, y, z] =
+        subtract([texel[0] / R::of(127.5), texel[1] / R::of(127.5), texel[2] / R::of(127.5)], [one; 3]);
+    normalize(add(add(scale(t, x), scale(b, y)), scale(n, z)))
 }
 // ANCHOR_END: mapped_normal
 
@@ -171,13 +190,15 @@ pub enum Light {
 impl Light {
     /// At a place: the direction towards the light, and how bright it is there.
     #[must_use]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn at<R: Real>(&self, place: Vector<R>) -> (Vector<R>, R) {
         match *self {
-            Self::Directional(to_light) => (to_light.map(R::of), R::of(1.0)),
-            Self::Point { position, intensity } => {
-                let offset = from_fn(|i| R::of(position[i]) - place[i]);
+            Self::Directional([x, y, z]) => ([R::of(x), R::of(y), R::of(z)], R::of(1.0)),
+            Self::Point { position: [x, y, z], intensity } => {
+                let offset = subtract([R::of(x), R::of(y), R::of(z)], place);
                 let distance = dot(offset, offset).sqrt();
-                (offset.map(|it| it / distance), R::of(intensity) * attenuation(distance))
+                let to_light = [offset[0] / distance, offset[1] / distance, offset[2] / distance];
+                (to_light, R::of(intensity) * attenuation(distance))
             }
         }
     }
@@ -218,6 +239,7 @@ impl Material {
     /// As in the note, nothing keeps a broad highlight from reaching a little beyond where the
     /// surface turns away from the light.
     #[must_use]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn shade<R: Real>(
         &self,
         surface: [R; 3],
@@ -234,7 +256,11 @@ impl Material {
 
         let body = R::of(self.ambient) + R::of(self.diffuse) * diffuse;
         let gloss = R::of(self.specular * 255.0) * intensity * highlight;
-        surface.map(|channel| (body * channel + gloss).min(R::of(255.0)))
+        each(
+            surface,
+            #[inline(always)]
+            |_, channel| (body * channel + gloss).min(R::of(255.0)),
+        )
     }
     // ANCHOR_END: shade
 }
@@ -243,6 +269,7 @@ impl Material {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+    use std::array::from_fn;
 
     fn direction() -> impl Strategy<Value = [f64; 3]> {
         prop::array::uniform3(-1.0..1.0).prop_filter("too short", |v| dot(*v, *v) > 0.01).prop_map(normalize)

@@ -9,11 +9,9 @@
 //! assert_eq!(Blend::SourceOver.apply([255.0, 0.0, 0.0, 0.5], [255.0; 3]), [255.0, 127.5, 127.5]);
 //! ```
 
-use std::array::from_fn;
-
 use crate::color::Color;
 use crate::depth::DepthTest;
-use crate::real::{Real, Scalar};
+use crate::real::{Real, Scalar, each};
 use crate::rect::Pixel;
 use crate::shader::{Paint, Shaded};
 use crate::target::Target;
@@ -33,13 +31,21 @@ pub enum Blend {
 impl Blend {
     /// The new color from the fragment's (with opacity) and the one that is there; channels in 0..=255.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn apply<R: Real>(self, [red, green, blue, opacity]: [R; 4], there: [R; 3]) -> [R; 3] {
         let source = [red, green, blue];
         match self {
             Self::Opaque => source,
-            Self::SourceOver => from_fn(|i| source[i] * opacity + there[i] * (R::of(1.0) - opacity)),
-            Self::Additive => from_fn(|i| (source[i] * opacity + there[i]).min(R::of(255.0))),
+            Self::SourceOver => each(
+                source,
+                #[inline(always)]
+                |i, s| s * opacity + there[i] * (R::of(1.0) - opacity),
+            ),
+            Self::Additive => each(
+                source,
+                #[inline(always)]
+                |i, s| (s * opacity + there[i]).min(R::of(255.0)),
+            ),
         }
     }
 }

@@ -86,6 +86,28 @@ pub trait Real:
     fn channels(colors: Self::Colors) -> [Self; 3];
 }
 
+/// Changes each of some numbers, which are counted from 0.
+///
+/// As `map` of an array and `array::from_fn` do, but these are only asked to be inlined. Where a number is several at a time,
+/// a function that is not inlined may be compiled for another processor than its caller.
+#[inline(always)]
+#[must_use]
+pub fn each<T: Copy, const N: usize>(mut numbers: [T; N], change: impl Fn(usize, T) -> T) -> [T; N] {
+    // A loop is unrolled too late: of a number that is one or eight the compiler would keep asking which.
+    macro_rules! change {
+        ($($k:literal)*) => {
+            $(if const { $k < N } {
+                numbers[$k] = change($k, numbers[$k]);
+            })*
+        };
+    }
+    change!(0 1 2 3 4 5 6 7);
+    for (k, number) in numbers.iter_mut().enumerate().skip(8) {
+        *number = change(k, *number);
+    }
+    numbers
+}
+
 /// A single number: one answer to a comparison, and a value that can be stored.
 pub trait Scalar: Real<Mask = bool, Colors = Color> + PartialOrd + Into<f64> {}
 

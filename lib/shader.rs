@@ -61,12 +61,19 @@ pub trait Shader<const N: usize>: Sync {
     /// for that, it keeps no state.
     fn fragment<R: Real>(&self, varyings: [R; N]) -> Shaded<R>;
 
+    /// Whether fragments are shaded for the processor that a program runs on, and not only for those that it is compiled for.
+    ///
+    /// Say `true` if [`Self::fragment`] and all functions and closures that it calls with generic numbers are
+    /// `#[inline(always)]`, as those of this library are; `map` of arrays is not, but [`each`](crate::real::each) is. What is not
+    /// inlined then takes ten times as long, for each operation is a call. The picture is the same in any case.
+    const IS_INLINED: bool = false;
+
     /// Whether fragments are shaded by [`Self::fragment_with_derivatives`].
     const USES_DERIVATIVES: bool = false;
 
     /// Varyings, and how they change from pixel to pixel → color: for filters, which need to know how much of a texture
     /// a pixel covers.
-    #[inline]
+    #[inline(always)]
     fn fragment_with_derivatives<R: Real>(&self, varyings: [R; N], _: Derivatives<R, N>) -> Shaded<R> {
         self.fragment(varyings)
     }
@@ -148,7 +155,7 @@ pub enum Paint<R: Real> {
 impl<R: Real> Paint<R> {
     /// Red, green and blue in 0..=255, and opacity in 0..=1.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn channels(self) -> [R; 4] {
         match self {
             Self::Channels(channels) => channels,
@@ -163,14 +170,14 @@ impl<R: Real> Paint<R> {
 impl<R: Real> Shaded<R> {
     /// A fragment through which nothing shines; channels in 0..=255.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn opaque([red, green, blue]: [R; 3]) -> Self {
         Self::translucent([red, green, blue], R::of(1.0))
     }
 
     /// A fragment of some opacity, 0..=1.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn translucent([red, green, blue]: [R; 3], opacity: R) -> Self {
         Self { color: Paint::Channels([red, green, blue, opacity]), keep: R::Mask::all(true) }
     }
@@ -178,14 +185,14 @@ impl<R: Real> Shaded<R> {
     /// A fragment that shows a texel, such as [`Texture::nearest_texel`](crate::texture::Texture::nearest_texel) gives,
     /// as it is.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn texel(texel: R::Colors) -> Self {
         Self { color: Paint::Texel(texel), keep: R::Mask::all(true) }
     }
 
     /// The same, but not drawn where the mask says so.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn discard(self, mask: R::Mask) -> Self {
         Self { keep: self.keep.and(mask.not()), ..self }
     }

@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 use crate::color::Color;
 use crate::interpolate::linear;
-use crate::real::Real;
+use crate::real::{Real, each};
 
 /// Which texel is meant by coordinates outside 0..=1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -44,16 +44,15 @@ impl AddressMode {
     ///
     /// Whatever comes in, NaN too, what goes out is inside. Source: Direct3D 11.3 functional
     /// specification, 7.18.9.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn apply<R: Real>(self, index: R, count: R) -> R {
-        let rest = |period: R| index - (index / period).floor() * period;
         let last = count - R::of(1.0);
         let inside = match self {
             Self::Clamp => index,
-            Self::Repeat => rest(count),
+            Self::Repeat => rest(index, count),
             Self::Mirror => {
                 // There and back again: the second half of the way runs backwards.
-                let way = rest(count + count);
+                let way = rest(index, count + count);
                 way.min(count + last - way)
             }
         };
@@ -65,7 +64,7 @@ impl AddressMode {
     /// mode.
     ///
     /// Repeated, u is wrapped before it is scaled, as the book does: no division is needed.
-    #[inline]
+    #[inline(always)]
     fn index<R: Real>(self, u: R, count: R, last: R) -> R {
         match self {
             Self::Clamp | Self::Mirror => self.apply((u * count).floor(), count),
@@ -73,6 +72,12 @@ impl AddressMode {
             Self::Repeat => ((u - u.floor()) * count).min(last),
         }
     }
+}
+
+/// What is left of an index when as many whole periods are taken off as there are.
+#[inline(always)]
+fn rest<R: Real>(index: R, period: R) -> R {
+    index - (index / period).floor() * period
 }
 
 /// A picture of `width` × `height` texels, row 0 at the bottom: v points up, as y does.
@@ -149,14 +154,14 @@ impl Texture {
     ///
     /// The book's early programs read past the array at u = 1; the address mode decides here.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn nearest<R: Real>(&self, uv: [R; 2], mode: AddressMode) -> [R; 3] {
         R::channels(self.nearest_texel(uv, mode))
     }
 
     /// The same texel, as it is stored: who only shows it need not take it apart.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn nearest_texel<R: Real>(&self, [u, v]: [R; 2], mode: AddressMode) -> R::Colors {
         let [width, height] = self.size();
         let column = mode.index(u, width, R::from(self.last_column));
@@ -170,26 +175,30 @@ impl Texture {
     /// Infinite coordinates mean the border for [`AddressMode::Clamp`], and NaN the first texel, as in [`Self::nearest`]. For
     /// the others they have no fraction: the mixture is NaN.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn bilinear<R: Real>(&self, uv: [R; 2], mode: AddressMode) -> [R; 3] {
-        bilinear(uv, self.size(), mode, |column, row| {
-            R::channels(R::gather_color(column, row, self.row_bits, &self.texels))
-        })
+        bilinear(
+            uv,
+            self.size(),
+            mode,
+            #[inline(always)]
+            |column, row| R::channels(R::gather_color(column, row, self.row_bits, &self.texels)),
+        )
     }
 
-    #[inline]
+    #[inline(always)]
     fn size<R: Real>(&self) -> [R; 2] {
         [R::from(self.columns), R::from(self.rows)]
     }
 
     /// A texel by its column and row.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn color(&self, column: usize, row: usize) -> Color {
         self.texels[(row << self.row_bits) + column]
     }
 
     /// The channels of a texel, in 0..=255.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn texel(&self, column: usize, row: usize) -> [f64; 3] {
         self.color(column, row).to_f64()
     }
@@ -220,25 +229,31 @@ fn with_longer_rows(texels: Vec<Color>, width: usize, length: usize) -> Vec<Colo
 /// ```
 ///
 /// Source: Direct3D 11.3 functional specification, 7.18.8.
-#[inline]
+#[inline(always)]
 pub(crate) fn bilinear<R: Real>(
     [u, v]: [R; 2],
     [width, height]: [R; 2],
     mode: AddressMode,
     texel: impl Fn(R, R) -> [R; 3],
 ) -> [R; 3] {
-    let [x, y] = [(u, width), (v, height)].map(|(coordinate, count)| {
-        let along = coordinate * count - R::of(0.5);
-        match mode {
-            // Farther out there is nothing new, and infinity has no fraction.
-            AddressMode::Clamp => along.max(R::of(-1.0)).min(count),
-            AddressMode::Repeat | AddressMode::Mirror => along,
-        }
-    });
-    let [left, right] = [x.floor(), x.floor() + R::of(1.0)].map(|column| mode.apply(column, width));
-    let rows = [y.floor(), y.floor() + R::of(1.0)].map(|row| mode.apply(row, height));
-    let [below, above] = rows.map(|row| linear(texel(left, row), texel(right, row), x - x.floor()));
-    linear(below, above, y - y.floor())
+    let [x, y] = each(
+        [u, v],
+        #[inline(always)]
+        |axis, coordinate| {
+            let count = [width, height][axis];
+            let along = coordinate * count - R::of(0.5);
+            match mode {
+                // Farther out there is nothing new, and infinity has no fraction.
+                AddressMode::Clamp => along.max(R::of(-1.0)).min(count),
+                AddressMode::Repeat | AddressMode::Mirror => along,
+            }
+        },
+    );
+    let columns = [mode.apply(x.floor(), width), mode.apply(x.floor() + R::of(1.0), width)];
+    let rows = [mode.apply(y.floor(), height), mode.apply(y.floor() + R::of(1.0), height)];
+    let low = linear(texel(columns[0], rows[0]), texel(columns[1], rows[0]), x - x.floor());
+    let high = linear(texel(columns[0], rows[1]), texel(columns[1], rows[1]), x - x.floor());
+    linear(low, high, y - y.floor())
 }
 // ANCHOR_END: bilinear
 

@@ -13,14 +13,12 @@
 //! assert_eq!(gradients, [[0.25, 0.0], [0.0, 0.125]]);
 //! ```
 
-use std::array::from_fn;
-
 use glam::DVec2;
 
 use crate::area::twice_signed_area;
 use crate::clip::NdcVertex;
 use crate::interpolate::{Interpolation, Projected};
-use crate::real::Real;
+use crate::real::{Real, each};
 
 /// How varyings change from one pixel to the next: to the right, and upwards.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,7 +57,7 @@ impl<R: Real, const N: usize> LinearVaryings<R, N> {
     /// At a vertex: divides what is to be interpolated by w. All triangles that meet there can
     /// share it.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn new(vertex: &NdcVertex<N>, interpolation: Interpolation) -> Self {
         let (w, depth) = (R::of(vertex.w), R::of(vertex.position.z));
         let values = vertex.varyings.map(R::of);
@@ -67,37 +65,60 @@ impl<R: Real, const N: usize> LinearVaryings<R, N> {
             Interpolation::Affine => Self { distance: w, depth, values },
             Interpolation::PerspectiveCorrect | Interpolation::Reciprocal => {
                 let over_w = R::of(1.0) / w;
-                Self { distance: over_w, depth, values: values.map(|value| value * over_w) }
+                Self {
+                    distance: over_w,
+                    depth,
+                    values: each(
+                        values,
+                        #[inline(always)]
+                        |_, value| value * over_w,
+                    ),
+                }
             }
         }
     }
 
     /// Combines each number with the one of the same meaning.
-    #[inline]
+    #[inline(always)]
     fn with(&self, other: &Self, combine: impl Fn(R, R) -> R) -> Self {
         Self {
             distance: combine(self.distance, other.distance),
             depth: combine(self.depth, other.depth),
-            values: from_fn(|k| combine(self.values[k], other.values[k])),
+            values: each(
+                self.values,
+                #[inline(always)]
+                |k, value| combine(value, other.values[k]),
+            ),
         }
     }
 
     /// After so many times a change.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn moved(&self, change: &Self, times: R) -> Self {
-        self.with(change, |value, change| value + change * times)
+        self.with(
+            change,
+            #[inline(always)]
+            |value, change| value + change * times,
+        )
     }
 
     /// Multiplies by w again: what was interpolated linearly becomes w and values.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn multiplied(self, interpolation: Interpolation) -> Projected<R, N> {
         match interpolation {
             Interpolation::Affine => Projected { w: self.distance, values: self.values },
             Interpolation::PerspectiveCorrect | Interpolation::Reciprocal => {
                 let w = R::of(1.0) / self.distance;
-                Projected { w, values: self.values.map(|value| value * w) }
+                Projected {
+                    w,
+                    values: each(
+                        self.values,
+                        #[inline(always)]
+                        |_, value| value * w,
+                    ),
+                }
             }
         }
     }
@@ -107,13 +128,15 @@ impl<R: Real, const N: usize> LinearVaryings<R, N> {
     ///
     /// From V = (V/w) / (1/w) by the quotient rule: ∂V = w (∂(V/w) − V ∂(1/w)).
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn derivative(&self, point: &Projected<R, N>, interpolation: Interpolation) -> [R; N] {
         match interpolation {
             Interpolation::Affine => self.values,
-            Interpolation::PerspectiveCorrect | Interpolation::Reciprocal => {
-                from_fn(|k| (self.values[k] - point.values[k] * self.distance) * point.w)
-            }
+            Interpolation::PerspectiveCorrect | Interpolation::Reciprocal => each(
+                self.values,
+                #[inline(always)]
+                |k, value| (value - point.values[k] * self.distance) * point.w,
+            ),
         }
     }
 }
@@ -181,6 +204,7 @@ mod tests {
     use crate::interpolate::perspective_weights;
     use glam::dvec3;
     use proptest::prelude::*;
+    use std::array::from_fn;
 
     fn weights() -> impl Strategy<Value = [f64; 3]> {
         (0.0..1.0, 0.0..1.0).prop_map(|(a, b): (f64, f64)| {

@@ -16,9 +16,10 @@ use rasterbook::depth::{DepthBuffer, DepthEncoding, DepthTest};
 use rasterbook::exact::Exact;
 use rasterbook::interpolate::Interpolation;
 use rasterbook::merge::{Blend, Merge};
+use rasterbook::real::each;
 use rasterbook::shader::Paint;
 use rasterbook::texture::{AddressMode, Texture};
-use rasterbook::tiled::Tiled;
+use rasterbook::tiled::{Instructions, Tiled};
 use rasterbook::transform::Viewport;
 use rasterbook::varyings::Derivatives;
 use rasterbook::{
@@ -38,11 +39,13 @@ struct Busy {
 
 impl Shader<5> for Busy {
     type Attributes = Record;
+    const IS_INLINED: bool = true;
 
     fn vertex(&self, &(position, varyings): &Record) -> ClipVertex<5> {
         ClipVertex { position, varyings }
     }
 
+    #[inline(always)]
     fn fragment<R: Real>(&self, [r, g, b, u, v]: [R; 5]) -> Shaded<R> {
         let texel = if self.is_filtered {
             self.texture.bilinear([u, v], self.mode)
@@ -50,8 +53,11 @@ impl Shader<5> for Busy {
             self.texture.nearest([u, v], self.mode)
         };
         let bright = (u * u + v * v).sqrt();
-        let color = [r, g, b].map(|channel| channel * R::of(0.25));
-        let mixed = from_fn(|k| color[k] + texel[k] * bright.min(R::of(0.75)));
+        let mixed = each(
+            [r, g, b],
+            #[inline(always)]
+            |k, channel| channel * R::of(0.25) + texel[k] * bright.min(R::of(0.75)),
+        );
         Shaded::translucent(mixed, R::of(0.75)).discard(bright.is_less(R::of(0.1)))
     }
 }
@@ -61,16 +67,19 @@ struct Sloped(Busy);
 
 impl Shader<5> for Sloped {
     type Attributes = Record;
+    const IS_INLINED: bool = true;
     const USES_DERIVATIVES: bool = true;
 
     fn vertex(&self, record: &Record) -> ClipVertex<5> {
         self.0.vertex(record)
     }
 
+    #[inline(always)]
     fn fragment<R: Real>(&self, varyings: [R; 5]) -> Shaded<R> {
         self.0.fragment(varyings)
     }
 
+    #[inline(always)]
     fn fragment_with_derivatives<R: Real>(&self, varyings: [R; 5], change: Derivatives<R, 5>) -> Shaded<R> {
         let steep = (change.dx[3] * R::of(40.0)).max(change.dy[4] * R::of(25.0));
         let Shaded { color, keep } = self.fragment(varyings);
@@ -122,16 +131,19 @@ fn compare<S: Shader<N>, const N: usize>(
     size: (u32, u32),
 ) {
     let exact = draw_with(mesh, shader, state, None, size);
-    let tiled = Tiled::new();
-    // Twice, since working memory is kept.
-    for _ in 0..2 {
-        assert_same(&draw_with(mesh, shader, state, Some(&tiled), size), &exact);
+    // With all instructions that this processor has.
+    for instructions in Instructions::available() {
+        let tiled = Tiled::new().with_instructions(instructions);
+        // Twice, since working memory is kept.
+        for _ in 0..2 {
+            assert_same(&draw_with(mesh, shader, state, Some(&tiled), size), &exact);
+        }
+        // Triangles that others have shaded and clipped.
+        let mut target = Target::<f32>::sized(size.0, size.1);
+        target.clear(Color::rgb(10, 20, 30), state.clear_depth as f32);
+        draw(mesh, shader, state, &tiled, &mut target, &Silent);
+        assert_same(&target, &exact);
     }
-    // Triangles that others have shaded and clipped.
-    let mut target = Target::<f32>::sized(size.0, size.1);
-    target.clear(Color::rgb(10, 20, 30), state.clear_depth as f32);
-    draw(mesh, shader, state, &tiled, &mut target, &Silent);
-    assert_same(&target, &exact);
 }
 
 /// A corner on the screen or near it, at the eye, behind it, or far away.
@@ -398,18 +410,21 @@ struct Many<const N: usize, const IS_SLOPED: bool>;
 
 impl<const N: usize, const IS_SLOPED: bool> Shader<N> for Many<N, IS_SLOPED> {
     type Attributes = Record;
+    const IS_INLINED: bool = true;
     const USES_DERIVATIVES: bool = IS_SLOPED;
 
     fn vertex(&self, &(position, values): &Record) -> ClipVertex<N> {
         ClipVertex { position, varyings: from_fn(|k| values[k % 5] / (k + 1) as f64) }
     }
 
+    #[inline(always)]
     fn fragment<R: Real>(&self, varyings: [R; N]) -> Shaded<R> {
         let sum =
             |from: usize| varyings.iter().skip(from).step_by(3).fold(R::of(0.0), |sum, &value| sum + value);
         Shaded::opaque(from_fn(sum))
     }
 
+    #[inline(always)]
     fn fragment_with_derivatives<R: Real>(&self, varyings: [R; N], change: Derivatives<R, N>) -> Shaded<R> {
         self.fragment(from_fn(|k| varyings[k] + change.dx[k] * R::of(3.0) - change.dy[k]))
     }
@@ -545,11 +560,13 @@ struct Counted {
 
 impl Shader<5> for Counted {
     type Attributes = Record;
+    const IS_INLINED: bool = true;
 
     fn vertex(&self, &(position, varyings): &Record) -> ClipVertex<5> {
         ClipVertex { position, varyings }
     }
 
+    #[inline(always)]
     fn fragment<R: Real>(&self, [r, g, b, u, v]: [R; 5]) -> Shaded<R> {
         self.asked.fetch_add(1, Ordering::Relaxed);
         let radius = R::of(f64::from(u8::from(self.has_holes)));

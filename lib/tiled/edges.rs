@@ -3,13 +3,12 @@
 use std::array::from_fn;
 use std::ops::Range;
 
-use bytemuck::cast;
-use wide::{CmpEq, CmpGt, CmpLt, f64x4, i16x8, i32x8};
-
 use super::bands::TILE_HEIGHT;
-use super::lanes::{LANES, Lanes};
+use super::instruction_set::{Four, InstructionSet};
+use super::lanes::LANES;
 use super::snapped::{NO_FRACTIONS, SnappedPosition};
 use crate::exact::edge::{SUBPIXELS, is_top_left};
+use crate::real::each;
 use crate::rect::{Pixel, Rect};
 
 const PIXEL: i32 = SUBPIXELS as i32;
@@ -35,49 +34,54 @@ fn cross<T: Copy + std::ops::Mul<Output = T> + std::ops::Sub<Output = T>>(a: [T;
 /// columns that a picture has the error is smaller.
 pub(super) struct TriangleSetup {
     /// The edge functions at the center of the pixel (0, 0), and how they change to the right and upwards.
-    origin: f64x4,
-    right: f64x4,
-    up: f64x4,
+    origin: [f64; 4],
+    right: [f64; 4],
+    up: [f64; 4],
     /// The numerator of the quotient in row 0, and how it changes upwards.
-    above: f64x4,
-    above_up: f64x4,
-    one_over_step: f64x4,
+    above: [f64; 4],
+    above_up: [f64; 4],
+    one_over_step: [f64; 4],
     /// Added to the quotient: 0, or what makes it no bound at all, for the first column and for the one after the last.
-    no_first: f64x4,
-    no_end: f64x4,
+    no_first: [f64; 4],
+    no_end: [f64; 4],
     pub(super) one_over_area: f32,
 }
 
 impl TriangleSetup {
-    pub(super) fn new(positions: [SnappedPosition; 3]) -> Self {
+    #[inline(always)]
+    pub(super) fn new<I: InstructionSet>(instructions: I, positions: [SnappedPosition; 3]) -> Self {
         // Without change to the right a row is covered, or it is not: a bound far to the right of all, or to the left.
         const FAR: f64 = 1e6;
-        let (zero, half, one, infinity) = (f64x4::ZERO, f64x4::HALF, f64x4::ONE, f64x4::splat(f64::INFINITY));
+        let (zero, half, one) =
+            (instructions.four_of(0.0), instructions.four_of(0.5), instructions.four_of(1.0));
+        let infinity = instructions.four_of(f64::INFINITY);
         // From the vertices b, c, a to c, a, b.
-        let [a, b, c] = positions.map(|position| position.map(|along| f64::from(along - PIXEL / 2)));
-        let [from, to] = [[b, c, a], [c, a, b]]
-            .map(|[i, j, k]| [0, 1].map(|axis| f64x4::new([i[axis], j[axis], k[axis], 0.0])));
+        let [[ax, ay], [bx, by], [cx, cy]] =
+            positions.map(|position| position.map(|along| f64::from(along - PIXEL / 2)));
+        let from = [instructions.four([bx, cx, ax, 0.0]), instructions.four([by, cy, ay, 0.0])];
+        let to = [instructions.four([cx, ax, bx, 0.0]), instructions.four([cy, ay, by, 0.0])];
         let origin = cross(from, to);
         let [i, j, k, _] = origin.to_array();
         let area = i + j + k;
         // Seen so that the triangle is on the left of each.
-        let (sign, pixel) = (f64x4::splat(area.signum()), f64x4::splat(f64::from(PIXEL) * area.signum()));
+        let sign = instructions.four_of(area.signum());
+        let pixel = instructions.four_of(f64::from(PIXEL) * area.signum());
         let (origin, right, up) = (origin * sign, (from[1] - to[1]) * pixel, (to[0] - from[0]) * pixel);
         // A whole number has one zero only, which is positive.
         let (origin, right) = (origin + zero, right + zero);
 
-        let (grows, is_level, step) = (right.cmp_gt(zero), right.cmp_eq(zero), right.abs());
-        let is_top_left = grows | (is_level & up.cmp_lt(zero));
-        let value = origin + is_top_left.blend(half, -half);
+        let (grows, is_level, step) = (zero.is_less(right), right.is_equal(zero), right.abs());
+        let is_top_left = grows | (is_level & up.is_less(zero));
+        let value = origin + I::Four::select(is_top_left, half, -half);
         Self {
-            above: step + grows.blend(-value, value),
-            above_up: grows.blend(-up, up),
-            one_over_step: is_level.blend(f64x4::splat(FAR), one / step),
-            no_first: grows.blend(zero, -infinity),
-            no_end: grows.blend(infinity, zero),
-            origin,
-            right,
-            up,
+            above: (step + I::Four::select(grows, -value, value)).to_array(),
+            above_up: I::Four::select(grows, -up, up).to_array(),
+            one_over_step: I::Four::select(is_level, instructions.four_of(FAR), one / step).to_array(),
+            no_first: I::Four::select(grows, zero, -infinity).to_array(),
+            no_end: I::Four::select(grows, infinity, zero).to_array(),
+            origin: origin.to_array(),
+            right: right.to_array(),
+            up: up.to_array(),
             one_over_area: 1.0 / (area.abs() as f32),
         }
     }
@@ -85,7 +89,7 @@ impl TriangleSetup {
     /// How much more the second and the third vertex weigh one pixel farther to the right.
     #[inline]
     pub(super) fn weight_step(&self) -> [f32; 2] {
-        [1, 2].map(|i| self.right.as_array_ref()[i] as f32 * self.one_over_area)
+        [1, 2].map(|i| self.right[i] as f32 * self.one_over_area)
     }
 }
 
@@ -107,31 +111,44 @@ impl Spans {
     pub(super) const NONE: Self = Self { first: [0; ROWS], end: [0; ROWS], weights: [[0.0; ROWS]; 2] };
 
     /// Finds them in some rows, of which there are no more than a tile has, in a picture of so many columns.
-    pub(super) fn find(&mut self, setup: &TriangleSetup, rows: Range<i32>, columns: i32) {
-        let number = f64x4::new([0.0, 1.0, 2.0, 3.0]) + f64x4::splat(f64::from(rows.start));
-        let of_edge = |numbers: &f64x4, i: usize| f64x4::splat(numbers.as_array_ref()[i]);
-        let [mut above, mut values] = [(&setup.above, &setup.above_up), (&setup.origin, &setup.up)]
-            .map(|(origin, up)| [0, 1, 2].map(|i| of_edge(origin, i) + of_edge(up, i) * number));
-        let [next_above, next_value] =
-            [setup.above_up, setup.up].map(|up| up * f64x4::splat(AT_A_TIME as f64));
-        let leftmost = f64x4::HALF;
-        let rightmost = f64x4::splat(f64::from(columns) + 0.5);
+    #[inline(always)]
+    pub(super) fn find<I: InstructionSet>(
+        &mut self,
+        instructions: I,
+        setup: &TriangleSetup,
+        rows: Range<i32>,
+        columns: i32,
+    ) {
+        // (A closure would not be inlined for sure.)
+        macro_rules! four {
+            ($number:expr) => {
+                instructions.four_of($number)
+            };
+        }
+        let number = instructions.four([0.0, 1.0, 2.0, 3.0]) + four!(f64::from(rows.start));
+        let [mut above, mut values] = [[number; 3]; 2];
+        for i in 0..3 {
+            above[i] = four!(setup.above[i]) + four!(setup.above_up[i]) * number;
+            values[i] = four!(setup.origin[i]) + four!(setup.up[i]) * number;
+        }
+        let leftmost = four!(0.5);
+        let rightmost = four!(f64::from(columns) + 0.5);
         for row in (0..rows.len()).step_by(AT_A_TIME) {
             let (mut first, mut end) = (leftmost, rightmost);
             for (i, above) in above.iter_mut().enumerate() {
-                let column = *above * of_edge(&setup.one_over_step, i);
-                first = first.fast_max(column + of_edge(&setup.no_first, i));
-                end = end.fast_min(column + of_edge(&setup.no_end, i));
-                *above += of_edge(&next_above, i);
+                let column = *above * four!(setup.one_over_step[i]);
+                first = first.max(column + four!(setup.no_first[i]));
+                end = end.min(column + four!(setup.no_end[i]));
+                *above = *above + four!(setup.above_up[i] * AT_A_TIME as f64);
             }
-            let first = whole_below(first.fast_min(rightmost), &mut self.first[row..]);
-            whole_below(end.fast_max(leftmost), &mut self.end[row..]);
+            let first = whole_below(instructions, first.min(rightmost), &mut self.first[row..]);
+            whole_below(instructions, end.max(leftmost), &mut self.end[row..]);
             for i in [1, 2] {
-                let value = (values[i] + of_edge(&setup.right, i) * first).to_array();
+                let value = (values[i] + four!(setup.right[i]) * first).to_array();
                 for (weight, value) in self.weights[i - 1][row..].iter_mut().zip(value) {
                     *weight = value as f32 * setup.one_over_area;
                 }
-                values[i] += of_edge(&next_value, i);
+                values[i] = values[i] + four!(setup.up[i] * AT_A_TIME as f64);
             }
         }
     }
@@ -147,13 +164,14 @@ impl Spans {
 
 /// Rounds numbers down that are between 0 and 2³¹ and not whole.
 #[inline(always)]
-fn whole_below(numbers: f64x4, list: &mut [i32]) -> f64x4 {
+fn whole_below<I: InstructionSet>(instructions: I, numbers: I::Four, list: &mut [i32]) -> I::Four {
     // To the nearest of what is half less. The last bits of the sum are the whole number.
-    let sum = (numbers - f64x4::HALF) + f64x4::splat(NO_FRACTIONS);
+    let no_fractions = instructions.four_of(NO_FRACTIONS);
+    let sum = (numbers - instructions.four_of(0.5)) + no_fractions;
     for (whole, sum) in list.iter_mut().zip(sum.to_array()) {
         *whole = sum.to_bits() as i32;
     }
-    sum - f64x4::splat(NO_FRACTIONS)
+    sum - no_fractions
 }
 // ANCHOR_END: spans
 
@@ -209,19 +227,24 @@ impl SmallTriangleSetup {
 
     /// Which pixels of an area are covered: a bit each, eight for a row.
     #[inline(always)]
-    pub(super) fn covered(&self, area: Rect) -> u64 {
+    pub(super) fn covered<I: InstructionSet>(&self, instructions: I, area: Rect) -> u64 {
         let columns = (1_u64 << area.columns().len()) - 1;
         // A zero is positive here: the first summand is never −0, and then no sum is.
-        let mut values: [Lanes; 3] = from_fn(|i| {
-            Lanes::splat(self.start[i] - self.fill_rule_bias[i])
-                + Lanes::splat(self.right[i]) * Lanes::new(STEPS)
-        });
+        let mut values = [instructions.lanes(STEPS); 3];
+        for (i, value) in values.iter_mut().enumerate() {
+            let start = instructions.splat(self.start[i] - self.fill_rule_bias[i]);
+            *value = start + instructions.splat(self.right[i]) * *value;
+        }
         let mut covered = 0;
         for y in 0..area.rows().len() {
             // None of the three values says, by its sign, that the pixel is outside.
-            let outside = (values[0] | values[1] | values[2]).move_mask() as u8;
+            let outside = instructions.signs(values);
             covered |= (u64::from(!outside) & columns) << (SMALL_SIDE * y);
-            values = from_fn(|i| values[i] + Lanes::splat(self.up[i]));
+            values = each(
+                values,
+                #[inline(always)]
+                |i, value| value + instructions.splat(self.up[i]),
+            );
         }
         covered
     }
@@ -229,17 +252,22 @@ impl SmallTriangleSetup {
     /// The first covered column of each row, and how much the second and the third vertex weigh there. In rows without any
     /// what is answered means nothing.
     #[inline(always)]
-    pub(super) fn starts(&self, covered: u64) -> ([i32; SMALL_SIDE], [[f32; SMALL_SIDE]; 2]) {
-        let rows = i16x8::from_u8x16_low(cast([covered.to_le(), 0]));
-        // The exponent of a power of two is the number of its bit.
-        let lowest: Lanes = i32x8::from_i16x8(rows & -rows).round_float();
-        let columns: i32x8 = (cast::<Lanes, i32x8>(lowest) >> 23) - i32x8::splat(127);
-        let weights = [1, 2].map(|i| {
-            let [start, right, up] = [self.start, self.right, self.up].map(|edges| Lanes::splat(edges[i]));
-            let value = start + right * columns.round_float() + up * Lanes::new(STEPS);
-            (value * Lanes::splat(self.one_over_area)).to_array()
-        });
-        (columns.to_array(), weights)
+    pub(super) fn starts<I: InstructionSet>(
+        &self,
+        instructions: I,
+        covered: u64,
+    ) -> ([i32; SMALL_SIDE], [[f32; SMALL_SIDE]; 2]) {
+        let (columns, column) = instructions.lowest_bits(covered);
+        let weights = each(
+            [instructions.lanes(STEPS); 2],
+            #[inline(always)]
+            |i, row| {
+                let [start, right, up] = [self.start[i + 1], self.right[i + 1], self.up[i + 1]];
+                let value = instructions.splat(start) + instructions.splat(right) * column;
+                (value + instructions.splat(up) * row) * instructions.splat(self.one_over_area)
+            },
+        );
+        (columns, [instructions.numbers(weights[0]), instructions.numbers(weights[1])])
     }
 }
 // ANCHOR_END: small
@@ -248,6 +276,7 @@ impl SmallTriangleSetup {
 mod tests {
     use super::*;
     use crate::exact::edge::{Coverage, center};
+    use crate::tiled::instructions::with_each;
     use crate::tiled::snapped::{box_of, is_at_most, shared};
     use proptest::prelude::*;
 
@@ -285,22 +314,24 @@ mod tests {
             let bottom = area.bottom + which.index(area.rows().len()) as i32;
             let rows = bottom..area.top.min(bottom + TILE_HEIGHT);
 
-            let setup = TriangleSetup::new(positions);
-            let mut spans = Spans::NONE;
-            spans.find(&setup, rows.clone(), COLUMNS);
             let bits = |weights: [f32; 2]| weights.map(f32::to_bits);
-            prop_assert_eq!(bits(setup.weight_step()), bits(coverage.weight_step()));
-            for (row, y) in rows.enumerate() {
-                let expected = coverage.covered_columns(0..COLUMNS, y);
-                let (first, covered, weights) = spans.row(row, &(0..COLUMNS));
-                prop_assert_eq!(covered.is_empty(), expected.is_empty());
-                if !covered.is_empty() {
-                    prop_assert_eq!(&covered, &expected);
-                    prop_assert_eq!(first, covered.start);
-                    let expected = coverage.weights(coverage.edge_values(center(first, y)));
-                    prop_assert_eq!(bits(weights), bits(expected));
+            with_each!(instructions => {
+                let setup = TriangleSetup::new(instructions, positions);
+                let mut spans = Spans::NONE;
+                spans.find(instructions, &setup, rows.clone(), COLUMNS);
+                prop_assert_eq!(bits(setup.weight_step()), bits(coverage.weight_step()));
+                for (row, y) in rows.clone().enumerate() {
+                    let expected = coverage.covered_columns(0..COLUMNS, y);
+                    let (first, covered, weights) = spans.row(row, &(0..COLUMNS));
+                    prop_assert_eq!(covered.is_empty(), expected.is_empty());
+                    if !covered.is_empty() {
+                        prop_assert_eq!(&covered, &expected);
+                        prop_assert_eq!(first, covered.start);
+                        let expected = coverage.weights(coverage.edge_values(center(first, y)));
+                        prop_assert_eq!(bits(weights), bits(expected));
+                    }
                 }
-            }
+            });
         }
 
         #[test]
@@ -320,18 +351,20 @@ mod tests {
             let small = SmallTriangleSetup::new(positions, (area.left, area.bottom));
             let bits_of = |weights: [f32; 2]| weights.map(f32::to_bits);
             prop_assert_eq!(bits_of(small.weight_step()), bits_of(coverage.weight_step()));
-            let covered = small.covered(area);
-            let (columns, weights) = small.starts(covered);
-            for (row, y) in area.rows().enumerate() {
-                let expected = coverage.covered_columns(area.columns(), y);
-                let bits = expected.clone().fold(0, |bits, x| bits | 1_u64 << (x - area.left));
-                prop_assert_eq!(covered >> (8 * row) & 0xFF, bits);
-                if !expected.is_empty() {
-                    let expected_weights = coverage.weights::<f32>(coverage.edge_values(center(expected.start, y)));
-                    prop_assert_eq!(columns[row], expected.start - area.left);
-                    prop_assert_eq!(bits_of(weights.map(|weights| weights[row])), bits_of(expected_weights));
+            with_each!(instructions => {
+                let covered = small.covered(instructions, area);
+                let (columns, weights) = small.starts(instructions, covered);
+                for (row, y) in area.rows().enumerate() {
+                    let expected = coverage.covered_columns(area.columns(), y);
+                    let bits = expected.clone().fold(0, |bits, x| bits | 1_u64 << (x - area.left));
+                    prop_assert_eq!(covered >> (8 * row) & 0xFF, bits);
+                    if !expected.is_empty() {
+                        let expected_weights = coverage.weights::<f32>(coverage.edge_values(center(expected.start, y)));
+                        prop_assert_eq!(columns[row], expected.start - area.left);
+                        prop_assert_eq!(bits_of(weights.map(|weights| weights[row])), bits_of(expected_weights));
+                    }
                 }
-            }
+            });
         }
     }
 }

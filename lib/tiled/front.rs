@@ -6,6 +6,7 @@ use arrayvec::ArrayVec;
 use rayon::prelude::*;
 
 use super::bands::{TILE_HEIGHT, TILE_WIDTH, tiles_of};
+use super::instructions::Instructions;
 use super::snapped::{SnappedPosition, box_of, shared, signed_area};
 use super::vertices::{NOT_REPRESENTABLE, Projection, Triangle, Vertices};
 use crate::area::Winding;
@@ -62,6 +63,7 @@ impl Front {
     /// Sorts the triangles of a source into tiles.
     pub(super) fn prepare<S: Shader<N>, const N: usize>(
         &mut self,
+        instructions: Instructions,
         source: &Source<'_, S, N>,
         shader: &S,
         state: &RenderState,
@@ -79,7 +81,7 @@ impl Front {
         };
         match source {
             Source::Mesh(mesh) => {
-                self.vertices.shade(mesh, shader, &context.projection);
+                self.vertices.shade(instructions, mesh, shader, &context.projection);
                 self.bin(mesh.triangle_count(), &context, &|vertices, chunk, numbers| {
                     for number in numbers {
                         assemble(vertices, chunk, number, mesh, shader, &context);

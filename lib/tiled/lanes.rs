@@ -28,6 +28,15 @@ pub const LANES: usize = 8;
 /// Eight numbers of single precision.
 pub type Lanes = f32x8;
 
+/// Eight numbers in memory, where all processors can read and write them at once.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(32))]
+pub(super) struct Block(pub(super) [f32; LANES]);
+
+impl Block {
+    pub(super) const ZERO: Self = Self([0.0; LANES]);
+}
+
 /// Yes for all of them, as bits.
 pub(crate) const ALL: i32 = 0xFF;
 
@@ -80,11 +89,6 @@ impl LaneMask {
 #[inline]
 pub(crate) fn is_less_or_equal(a: Lanes, b: Lanes) -> LaneMask {
     LaneMask(a.cmp_le(b))
-}
-
-#[inline]
-pub(crate) fn is_greater(a: Lanes, b: Lanes) -> LaneMask {
-    LaneMask(a.cmp_gt(b))
 }
 
 impl sealed::Sealed for f32x8 {}
@@ -214,6 +218,8 @@ pub(crate) fn packed(color: [Lanes; 3]) -> i32x8 {
 mod tests {
     use super::*;
     use crate::merge::Rounding;
+    use crate::tiled::instruction_set::{InstructionSet, MaskOf};
+    use crate::tiled::instructions::with_each;
 
     const ODD: [f32; 8] = [-0.5, 0.0, 2.999_999, -3.0, 8_388_607.5, 1e30, -7.25, 254.5];
     const OTHER: [f32; 8] = [1.0, -2.0, 3.5, 0.25, -1e9, 1e-3, 7.0, 255.0];
@@ -223,29 +229,53 @@ mod tests {
     #[test]
     fn lanes_do_what_one_number_does() {
         for (a, b) in [(ODD, OTHER), (ZEROS, OTHER_ZEROS), (OTHER_ZEROS, ZEROS)] {
-            lanes_do_what_each_does(a, b);
+            with_each!(instructions => { lanes_do_what_each_does(instructions, a, b) });
         }
     }
 
-    fn lanes_do_what_each_does(numbers: [f32; 8], others: [f32; 8]) {
-        let (a, b) = (Lanes::new(numbers), Lanes::new(others));
+    fn lanes_do_what_each_does<I: InstructionSet>(instructions: I, numbers: [f32; 8], others: [f32; 8]) {
+        let (a, b) = (instructions.lanes(numbers), instructions.lanes(others));
         // There are many ways to write what is not a number.
         let bits = |number: f32| if number.is_nan() { f32::NAN.to_bits() } else { number.to_bits() };
-        let check = |lanes: Lanes, one: fn(f32, f32) -> f32| {
-            assert_eq!(lanes.to_array().map(bits), from_fn(|i| bits(one(numbers[i], others[i]))));
+        let check = |lanes: I::Lanes, one: fn(f32, f32) -> f32| {
+            let expected: [u32; 8] = from_fn(|i| bits(one(numbers[i], others[i])));
+            assert_eq!(instructions.numbers(lanes).map(bits), expected);
         };
         check(a + b, |a, b| a + b);
+        check(a - b, |a, b| a - b);
         check(a * b, |a, b| a * b);
         check(a / b, |a, b| a / b);
+        // (`wide` subtracts from 0, which makes 0 of 0 and not −0.)
+        check(-(a - I::Lanes::of(0.25)), |a, _| -(a - 0.25));
         check(Real::min(a, b), Real::min);
         check(Real::max(a, b), Real::max);
         check(Real::floor(a), |a, _| Real::floor(a));
         check(Real::floor(b), |_, b| Real::floor(b));
+        check(Real::sqrt(b), |_, b| b.sqrt());
         check(Real::select(a.is_less(b), a, b), |a, b| if a < b { a } else { b });
+        check(Real::select(instructions.is_less_or_equal(a, b), a, b), |a, b| if a <= b { a } else { b });
+        check(Real::select(a.is_less(b).not(), a, b), |a, b| if a < b { b } else { a });
         check(Real::map(b, |v| v * 0.1), |_, b| Real::map(b, |v| v * 0.1));
         let both = |[a, b]: [f64; 2]| [a - b, a * 0.1];
         check(Real::map_all([a, b], both)[0], |a, b| Real::map_all([a, b], |[a, b]| [a - b])[0]);
         check(Real::map_all([a, b], both)[1], |a, _| Real::map_all([a], |[a]| [a * 0.1])[0]);
+        // What is the same in all lanes, on either side.
+        for number in ZEROS {
+            let same = I::Lanes::from(number);
+            let check_same = |lanes: I::Lanes, one: fn(f32, f32) -> f32| {
+                let expected: [u32; 8] = from_fn(|i| bits(one(number, others[i])));
+                assert_eq!(instructions.numbers(lanes).map(bits), expected);
+            };
+            check_same(same - b, |a, b| a - b);
+            check_same(b - same, |a, b| b - a);
+            check_same(same / b, |a, b| a / b);
+            check_same(Real::min(same, b), Real::min);
+            check_same(Real::max(b, same), |a, b| Real::max(b, a));
+            check_same(Real::select(b.is_less(same), same, b), |a, b| if b < a { a } else { b });
+            check_same(Real::min(same, I::Lanes::of(0.0)), |a, _| Real::min(a, 0.0));
+            check_same(Real::map_all([same, b], both)[0], |a, b| Real::map_all([a, b], |[a, b]| [a - b])[0]);
+            check_same(Real::map_all([same, same], both)[1], |a, _| Real::map_all([a], |[a]| [a * 0.1])[0]);
+        }
     }
 
     #[test]
@@ -257,33 +287,72 @@ mod tests {
 
     #[test]
     fn masks() {
-        assert_eq!(LaneMask::of_bits(0b1_1100).bits(), 0b1_1100);
-        let numbers = i32x8::new([-1, 2, 0, 3, i32::MAX, i32::MIN, 7, -9]);
+        with_each!(instructions => { check_masks(instructions) });
+    }
+
+    fn check_masks<I: InstructionSet>(instructions: I) {
+        let mask = |bits| instructions.mask(bits);
+        assert_eq!(instructions.bits(mask(0b1_1100)), 0b1_1100);
+        let yes = instructions.words([1, 2, 0, 3, u32::MAX, 1 << 31, 7, 9]);
+        let no = instructions.words([5; 8]);
+        let chosen = |mask| instructions.word_array(instructions.choose(mask, yes, no));
+        assert_eq!(chosen(mask(0b110)), [5, 2, 0, 5, 5, 5, 5, 5]);
+        assert_eq!(chosen(Mask::all(true)), instructions.word_array(yes));
+        assert_eq!(chosen(Mask::all(false)), [5; 8]);
+        let all = |answer| -> MaskOf<I> { Mask::all(answer) };
+        assert_eq!(instructions.bits(all(true)), ALL);
+        assert_eq!(instructions.bits(all(true).not()), 0);
+        let some = mask(0b1111);
+        let both = |other| instructions.bits(some.and(other));
+        assert_eq!([mask(0b1111_1000), all(true), all(false)].map(both), [0b1000, 0b1111, 0]);
+        assert_eq!(instructions.bits(all(false).and(some)), 0);
         assert_eq!(
-            LaneMask::of_bits(0b110).choose(numbers, i32x8::splat(5)).to_array(),
-            [5, 2, 0, 5, 5, 5, 5, 5]
+            instructions.signs([[-1.0, 1.0], [1.0, -0.0], [1.0, 1.0]].map(|[first, second]| {
+                instructions.lanes([first, second, 1.0, 1.0, 1.0, 1.0, 1.0, first])
+            })),
+            0b1000_0011
         );
-        assert_eq!(LaneMask::all(true).not().bits(), 0);
-        assert_eq!(LaneMask::of_bits(0b1111).and(LaneMask::of_bits(0b1111_1000)).bits(), 0b1000);
     }
 
     #[test]
     fn colors_to_words_and_back() {
+        with_each!(instructions => { check_colors(instructions) });
+    }
+
+    fn check_colors<I: InstructionSet>(instructions: I) {
         let values = [-1.0, 0.0, 0.5, 127.49, 254.5, 255.0, 300.0, f32::NAN];
-        let color = [Lanes::new(values), Lanes::of(10.0), Lanes::of(20.0)];
-        for (word, value) in packed(color).to_array().into_iter().zip(values) {
-            assert_eq!(Color::from_bits(word as u32), Rounding::Nearest.color([value, 10.0, 20.0]));
+        let color = [instructions.lanes(values), I::Lanes::of(10.0), I::Lanes::of(20.0)];
+        for (word, value) in instructions.word_array(instructions.packed(color)).into_iter().zip(values) {
+            assert_eq!(Color::from_bits(word), Rounding::Nearest.color([value, 10.0, 20.0]));
         }
-        let [red, green, blue] = Lanes::channels(i32x8::splat(0x0010_2030));
-        assert_eq!([red, green, blue].map(|lanes| lanes.to_array()[3]), [16.0, 32.0, 48.0]);
+        let [red, green, blue] = I::Lanes::channels(instructions.words([0x0010_2030; 8]));
+        assert_eq!([red, green, blue].map(|lanes| instructions.numbers(lanes)[3]), [16.0, 32.0, 48.0]);
     }
 
     #[test]
     fn colors_are_looked_up() {
+        with_each!(instructions => { check_look_up(instructions) });
+    }
+
+    fn check_look_up<I: InstructionSet>(instructions: I) {
         let colors: Vec<Color> = (0..8).map(|i| Color::rgb(i * 10, i, 255 - i)).collect();
-        let columns = Lanes::new([0.0, 1.0, 2.0, 0.0, 1.0, 2.0, 1.0, 0.0]);
-        let rows = Lanes::new([0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 0.0, 1.0]);
-        let [red, ..] = Lanes::channels(Lanes::gather_color(columns, rows, 2, &colors));
-        assert_eq!(red.to_array(), [0.0, 10.0, 20.0, 40.0, 50.0, 60.0, 10.0, 40.0]);
+        let columns = instructions.lanes([0.0, 1.0, 2.0, 0.0, 1.0, 2.0, 1.0, 0.0]);
+        let rows = instructions.lanes([0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 0.0, 1.0]);
+        let reds = |columns, rows| {
+            let [red, ..] = I::Lanes::channels(I::Lanes::gather_color(columns, rows, 2, &colors));
+            instructions.numbers(red)
+        };
+        assert_eq!(reds(columns, rows), [0.0, 10.0, 20.0, 40.0, 50.0, 60.0, 10.0, 40.0]);
+        assert_eq!(reds(I::Lanes::of(1.0), rows), [10.0, 10.0, 10.0, 50.0, 50.0, 50.0, 10.0, 50.0]);
+        assert_eq!(reds(I::Lanes::of(1.0), I::Lanes::of(1.0)), [50.0; 8]);
+    }
+
+    #[test]
+    fn rows_become_columns() {
+        with_each!(instructions => {
+            let rows = from_fn(|row| Block(from_fn(|column| (row * 10 + column) as f32)));
+            let columns = instructions.transposed(&rows).map(|column| instructions.numbers(column));
+            assert_eq!(columns, from_fn(|row| from_fn(|column| (column * 10 + row) as f32)));
+        });
     }
 }

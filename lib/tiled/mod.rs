@@ -1,14 +1,15 @@
 //! Beyond the book: the fast rasterizer. What [`Exact`](crate::exact::Exact) draws in `f32`, to the last bit, in a
 //! fraction of the time.
 //!
-//! Eight things make the difference: eight fragments are shaded at a time ([`lanes`]); every vertex is
+//! Nine things make the difference: eight fragments are shaded at a time ([`lanes`]); every vertex is
 //! made ready once, however many triangles share it (`vertices.rs`), and triangles that turn away are gone before anything
 //! is computed for them (`front.rs`); triangles are sorted into *tiles*, rectangles of the picture that are small enough to
 //! stay near, and a row of tiles belongs to one thread (`front.rs`); within a tile, the covered part of a row is known by
 //! its ends (`edges.rs`), and values go on linearly from its first pixel (`packed.rs`); triangles that cover only a few
 //! pixels share the eight lanes with others (`tile.rs`); what is hidden in all of a tile is left out there
-//! (`occlusion.rs`); what is blank is not cleared again (`background.rs`); and while pixels are drawn, others that are soon
-//! cleared are fetched (`tile.rs`).
+//! (`occlusion.rs`); what is blank is not cleared again (`background.rs`); while pixels are drawn, others that are soon
+//! cleared are fetched (`tile.rs`); and all of this is compiled twice, for any processor and for those with AVX2
+//! ([`Instructions`]).
 //!
 //! ```text
 //!   vertices ──► shaded, divided, ──► triangles: culled, ──► bins: for each tile, ──► tiles: coverage, depth,
@@ -20,6 +21,9 @@
 //! `rayon` pool in which it is called. A thread outside of the pool must wake one of the pool's for each picture: a tenth
 //! of the time of a small one. `ThreadPool::install` around the loop avoids it, and so does a pool that is built with
 //! `ThreadPoolBuilder::use_current_thread`.
+//!
+//! AVX2 is used where a program finds it, if the shader says [`Shader::IS_INLINED`] and the options for pixels are the default
+//! ones.
 //!
 //! ```
 //! use glam::{DVec4, dvec4};
@@ -50,11 +54,16 @@
 //! S. Laine and T. Karras, High-performance software rasterization on GPUs, 2011; N. Greene, M. Kass and G. Miller,
 //! Hierarchical Z-buffer visibility, 1993.
 
+#[cfg(all(target_arch = "x86_64", not(target_feature = "avx2")))]
+mod avx2;
 mod background;
 mod bands;
+mod baseline;
 mod edges;
 mod frame;
 mod front;
+mod instruction_set;
+mod instructions;
 pub mod lanes;
 mod occlusion;
 mod packed;
@@ -76,9 +85,14 @@ use crate::target::Target;
 
 use background::Background;
 use bands::{Band, each_band, tiles_of};
+use baseline::Baseline;
 use frame::{Frame, is_plain};
 use front::{Front, Source};
+use instruction_set::InstructionSet;
+use instructions::Compiled;
 use tile::Tile;
+
+pub use instructions::Instructions;
 
 /// The fast rasterizer. It keeps its working memory from picture to picture: make one and use it again.
 ///
@@ -86,6 +100,7 @@ use tile::Tile;
 /// shaded and clipped, and is not as fast. It reports nothing: [`Exact`](crate::exact::Exact) draws the same and does.
 #[derive(Debug, Default)]
 pub struct Tiled {
+    instructions: Instructions,
     front: Mutex<Front>,
 }
 
@@ -94,6 +109,18 @@ impl Tiled {
     #[must_use]
     pub fn new() -> Self {
         Self::default()
+    }
+
+    /// The same, but drawn with these instructions.
+    #[must_use]
+    pub fn with_instructions(self, instructions: Instructions) -> Self {
+        Self { instructions, ..self }
+    }
+
+    /// Which instructions it draws with: the best that this processor has, unless others were asked for.
+    #[must_use]
+    pub const fn instructions(&self) -> Instructions {
+        self.instructions
     }
 
     // ANCHOR: draw_mesh
@@ -129,7 +156,7 @@ impl Tiled {
         let front = shared.as_deref_mut().unwrap_or(&mut own);
         // Into the pool once, not once for each of the steps.
         in_pool(&mut || {
-            front.prepare(source, shader, state, picture);
+            front.prepare(self.instructions, source, shader, state, picture);
             let frame = Frame {
                 shader,
                 state,
@@ -139,7 +166,15 @@ impl Tiled {
                 columns: picture.right,
                 discards: AtomicBool::new(false),
             };
-            draw_tiles(&frame, picture, target);
+            // ANCHOR: dispatch
+            match self.instructions.0 {
+                #[cfg(all(target_arch = "x86_64", not(target_feature = "avx2")))]
+                Compiled::Avx2(avx2) if S::IS_INLINED && frame.is_plain => {
+                    draw_tiles(avx2, &frame, picture, target);
+                }
+                _ => draw_tiles(Baseline, &frame, picture, target),
+            }
+            // ANCHOR_END: dispatch
         });
     }
 }
@@ -153,7 +188,8 @@ fn in_pool(work: &mut (dyn FnMut() + Send)) {
 
 // ANCHOR: tiles
 /// Draws all tiles, those of several bands at a time.
-fn draw_tiles<S: Shader<N>, const N: usize>(
+fn draw_tiles<I: InstructionSet, S: Shader<N>, const N: usize>(
+    instructions: I,
     frame: &Frame<'_, S, N>,
     picture: Rect,
     target: &mut Target<f32>,
@@ -164,15 +200,20 @@ fn draw_tiles<S: Shader<N>, const N: usize>(
     each_band(picture, colors, depths, &|row, mut band| {
         // Here and not before: what was just written is still near when the tiles come.
         background.clear(&mut band, row * columns);
-        band.with_room(|band| draw_band(frame, band, row * columns));
+        band.with_room(|band| draw_band(instructions, frame, band, row * columns));
     });
     background.put_back(colors, depths, columns * rows, &|tile| frame.front.is_empty(tile));
 }
 
 /// Draws the tiles of a band, which are numbered from `first` on.
-fn draw_band<S: Shader<N>, const N: usize>(frame: &Frame<'_, S, N>, band: Band<'_>, first: usize) {
+fn draw_band<I: InstructionSet, S: Shader<N>, const N: usize>(
+    instructions: I,
+    frame: &Frame<'_, S, N>,
+    band: Band<'_>,
+    first: usize,
+) {
     let tiles = band.tiles(first);
-    let mut tile = Tile::new(band);
+    let mut tile = Tile::new(instructions, band);
     for (number, rect) in tiles {
         if !frame.front.is_empty(number) {
             tile.draw(frame, number, rect);

@@ -65,7 +65,7 @@ pub(super) fn coverage_of(triangle: Triangle<'_>) -> Option<Coverage> {
 
 /// The least and the greatest depth that a triangle can have in a rectangle, with room for rounding.
 pub(super) fn depth_range(coverage: &Coverage, triangle: Triangle<'_>, rect: Rect) -> [f64; 2] {
-    let [first, second, third] = triangle.packed.map(|packed| f64::from(packed[0].as_array_ref()[1]));
+    let [first, second, third] = triangle.packed.map(|packed| f64::from(packed[0].0[1]));
     let (to_second, to_third) = (second - first, third - first);
     let depths = corners(rect).map(|corner| {
         let [second, third] = coverage.weights::<f64>(coverage.edge_values(corner));

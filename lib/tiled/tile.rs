@@ -3,12 +3,12 @@
 use std::sync::atomic::Ordering;
 
 use prefetch_index::prefetch_index;
-use wide::{f32x8, i32x8};
 
 use super::bands::{Band, TILE_HEIGHT};
 use super::edges::{SMALL_SIDE, STEPS, SmallTriangleSetup, Spans, TriangleSetup};
 use super::frame::Frame;
-use super::lanes::{ALL, LANES, LaneMask, Lanes, is_greater, is_less_or_equal, packed};
+use super::instruction_set::{InstructionSet, MaskOf, WordsOf};
+use super::lanes::{ALL, Block, LANES};
 use super::occlusion::{NO_OCCLUDER, coverage_of, depth_range, occluder_depth};
 use super::packed::{PackedTriangleVaryings, linear};
 use super::snapped::{box_of, is_at_most, shared};
@@ -24,7 +24,8 @@ use crate::shader::{Paint, Shaded, Shader};
 use crate::varyings::{Derivatives, LinearVaryings};
 
 /// The tile of a band that is being drawn.
-pub(super) struct Tile<'a> {
+pub(super) struct Tile<'a, I> {
+    instructions: I,
     pub(super) band: Band<'a>,
     /// What of the tile lies in the picture.
     rect: Rect,
@@ -39,19 +40,20 @@ pub(super) struct Tile<'a> {
 struct Queue {
     count: usize,
     /// 1/w, depth, V/w of each fragment.
-    packed: [f32x8; LANES],
+    packed: [Block; LANES],
     /// Where in the band each fragment is: an index.
     indices: [usize; LANES],
 }
 
-impl<'a> Tile<'a> {
+impl<'a, I: InstructionSet> Tile<'a, I> {
     /// No tile yet.
-    pub(super) fn new(band: Band<'a>) -> Self {
+    pub(super) fn new(instructions: I, band: Band<'a>) -> Self {
         Self {
+            instructions,
             band,
             rect: Rect::sized(0, 0),
             occluder_depth: NO_OCCLUDER,
-            queue: Queue { count: 0, packed: [f32x8::ZERO; LANES], indices: [0; LANES] },
+            queue: Queue { count: 0, packed: [Block::ZERO; LANES], indices: [0; LANES] },
             spans: Spans::NONE,
         }
     }
@@ -77,7 +79,17 @@ impl<'a> Tile<'a> {
 
     #[inline(never)]
     fn draw_all<S: Shader<N>, const N: usize>(&mut self, frame: &Frame<'_, S, N>, number: usize) {
-        frame.front.each_triangle_in(frame.source, number, |triangle| self.draw_triangle(frame, triangle));
+        self.instructions.run(
+            #[inline(always)]
+            || {
+                frame.front.each_triangle_in(
+                    frame.source,
+                    number,
+                    #[inline(always)]
+                    |triangle| self.draw_triangle(frame, triangle),
+                );
+            },
+        );
         self.flush(frame);
     }
 
@@ -106,38 +118,42 @@ impl<'a> Tile<'a> {
 
     // ANCHOR: small
     /// A few pixels: each covered one goes into the queue.
+    #[inline(always)]
     fn draw_small<S: Shader<N>, const N: usize>(
         &mut self,
         frame: &Frame<'_, S, N>,
         triangle: Triangle<'_>,
         area: Rect,
     ) {
+        let instructions = self.instructions;
         let setup = SmallTriangleSetup::new(triangle.positions, (area.left, area.bottom));
-        let varyings = PackedTriangleVaryings::<N>::of(triangle);
-        let step = varyings.change(setup.weight_step()).first;
-        let mut covered = setup.covered(area);
-        let (firsts, weights) = setup.starts(covered);
+        let varyings = PackedTriangleVaryings::<_, N>::of(instructions, triangle);
+        let step = varyings.change(instructions, setup.weight_step()).first;
+        let mut covered = setup.covered(instructions, area);
+        let (firsts, weights) = setup.starts(instructions, covered);
         let (corner, width) = (self.band.index((area.left, area.bottom)), self.band.stride);
         while covered != 0 {
             let bit = covered.trailing_zeros() as usize;
             covered &= covered - 1;
             let (row, column) = (bit / SMALL_SIDE, bit % SMALL_SIDE);
-            let start = varyings.at([weights[0][row], weights[1][row]]).first;
+            let start = varyings.at(instructions, [weights[0][row], weights[1][row]]).first;
             // The remainder only shows the compiler that the index is in range.
-            let packed = start + step * f32x8::splat(STEPS[(column - firsts[row] as usize) % SMALL_SIDE]);
+            let steps = instructions.splat(STEPS[(column - firsts[row] as usize) % SMALL_SIDE]);
+            let packed = Block(instructions.numbers(start + step * steps));
             self.enqueue(frame, packed, corner + row * width + column);
         }
     }
 
     /// Lets a fragment wait for others, unless it is hidden already.
+    #[inline(always)]
     fn enqueue<S: Shader<N>, const N: usize>(
         &mut self,
         frame: &Frame<'_, S, N>,
-        packed: f32x8,
+        packed: Block,
         index: usize,
     ) {
         // Stored depths never grow: what fails now fails later.
-        if frame.is_plain && packed.as_array_ref()[1] > self.band.depths[index] {
+        if frame.is_plain && packed.0[1] > self.band.depths[index] {
             return;
         }
         self.queue.packed[self.queue.count] = packed;
@@ -150,9 +166,12 @@ impl<'a> Tile<'a> {
 
     /// Shades all fragments that wait.
     fn flush<S: Shader<N>, const N: usize>(&mut self, frame: &Frame<'_, S, N>) {
-        if self.queue.count > 0 && frame.is_plain {
+        if self.queue.count == 0 {
+            return;
+        }
+        if I::ONLY_PLAIN || frame.is_plain {
             self.flush_queue::<true, S, N>(frame);
-        } else if self.queue.count > 0 {
+        } else {
             self.flush_queue::<false, S, N>(frame);
         }
     }
@@ -160,18 +179,30 @@ impl<'a> Tile<'a> {
     /// Shades them all at once, and writes them one after the other.
     #[inline(never)]
     fn flush_queue<const PLAIN: bool, S: Shader<N>, const N: usize>(&mut self, frame: &Frame<'_, S, N>) {
-        let count = std::mem::take(&mut self.queue.count);
+        self.instructions.run(
+            #[inline(always)]
+            || self.flush_queue_in::<PLAIN, S, N>(frame),
+        );
+    }
+
+    #[inline(always)]
+    fn flush_queue_in<const PLAIN: bool, S: Shader<N>, const N: usize>(&mut self, frame: &Frame<'_, S, N>) {
+        let (count, instructions) = (std::mem::take(&mut self.queue.count), self.instructions);
         let Merge { depth_test, depth_write, blend } =
             if PLAIN { Merge::default() } else { frame.state.merge };
-        let numbers = f32x8::transpose(self.queue.packed);
-        let linear = linear(|k| numbers.get(k).copied().unwrap_or(f32x8::ZERO));
+        let numbers = instructions.transposed(&self.queue.packed);
+        let zero = instructions.splat(0.0);
+        let linear = linear(
+            #[inline(always)]
+            |k| if k < LANES { numbers[k] } else { zero },
+        );
         let interpolation = if PLAIN { Interpolation::PerspectiveCorrect } else { frame.state.interpolation };
-        let point: Projected<Lanes, N> = linear.multiplied(interpolation);
+        let point: Projected<I::Lanes, N> = linear.multiplied(interpolation);
         let is_linear = PLAIN || frame.state.depth_encoding.is_linear_on_screen();
-        let depths = if is_linear { linear.depth } else { point.w }.to_array();
-        let shaded: Shaded<Lanes> = frame.shader.fragment(point.values);
-        let kept = shaded.keep.bits();
-        let opaque = opaque(shaded.color).to_array();
+        let depths = instructions.numbers(if is_linear { linear.depth } else { point.w });
+        let shaded: Shaded<I::Lanes> = frame.shader.fragment(point.values);
+        let kept = instructions.bits(shaded.keep);
+        let opaque = instructions.word_array(opaque(instructions, shaded.color));
         let channels = shaded.color.channels();
         for lane in (0..count).filter(|lane| kept >> lane & 1 == 1) {
             let index = self.queue.indices[lane];
@@ -183,8 +214,8 @@ impl<'a> Tile<'a> {
                 *depth = depths[lane];
             }
             *color = match blend {
-                Blend::Opaque => Color::from_bits(opaque[lane] as u32),
-                _ => blended(blend, channels.map(|channel| channel.to_array()[lane]), *color),
+                Blend::Opaque => Color::from_bits(opaque[lane]),
+                _ => blended(blend, channels.map(|channel| instructions.numbers(channel)[lane]), *color),
             };
         }
     }
@@ -192,6 +223,7 @@ impl<'a> Tile<'a> {
 
     // ANCHOR: rows
     /// Many pixels: row by row.
+    #[inline(never)]
     fn draw_spans<S: Shader<N>, const N: usize>(
         &mut self,
         frame: &Frame<'_, S, N>,
@@ -199,12 +231,35 @@ impl<'a> Tile<'a> {
         area: Rect,
     ) {
         self.flush(frame);
-        let setup = TriangleSetup::new(triangle.positions);
-        self.spans.find(&setup, area.rows(), frame.columns);
-        if frame.is_plain {
-            draw_rows::<true, S, N>(frame, triangle, &setup, &self.spans, area, &mut self.band);
+        let instructions = self.instructions;
+        let setup = instructions.run(
+            #[inline(always)]
+            || {
+                let setup = TriangleSetup::new(instructions, triangle.positions);
+                self.spans.find(instructions, &setup, area.rows(), frame.columns);
+                setup
+            },
+        );
+        if I::ONLY_PLAIN || frame.is_plain {
+            draw_rows::<true, I, S, N>(
+                instructions,
+                frame,
+                triangle,
+                &setup,
+                &self.spans,
+                area,
+                &mut self.band,
+            );
         } else {
-            draw_rows::<false, S, N>(frame, triangle, &setup, &self.spans, area, &mut self.band);
+            draw_rows::<false, I, S, N>(
+                instructions,
+                frame,
+                triangle,
+                &setup,
+                &self.spans,
+                area,
+                &mut self.band,
+            );
         }
     }
 }
@@ -213,7 +268,24 @@ impl<'a> Tile<'a> {
 ///
 /// A function by itself, so that the compiler knows that nothing that is written here changes what is read.
 #[inline(never)]
-fn draw_rows<const PLAIN: bool, S: Shader<N>, const N: usize>(
+fn draw_rows<const PLAIN: bool, I: InstructionSet, S: Shader<N>, const N: usize>(
+    instructions: I,
+    frame: &Frame<'_, S, N>,
+    triangle: Triangle<'_>,
+    setup: &TriangleSetup,
+    spans: &Spans,
+    area: Rect,
+    band: &mut Band<'_>,
+) {
+    instructions.run(
+        #[inline(always)]
+        || draw_rows_in::<PLAIN, I, S, N>(instructions, frame, triangle, setup, spans, area, band),
+    );
+}
+
+#[inline(always)]
+fn draw_rows_in<const PLAIN: bool, I: InstructionSet, S: Shader<N>, const N: usize>(
+    instructions: I,
     frame: &Frame<'_, S, N>,
     triangle: Triangle<'_>,
     setup: &TriangleSetup,
@@ -224,18 +296,24 @@ fn draw_rows<const PLAIN: bool, S: Shader<N>, const N: usize>(
     let (bottom_left, stride, to_next_band) =
         (band.index((area.left, area.bottom)), band.stride, band.to_next_band);
     let (colors, depths) = (&mut *band.colors, &mut *band.depths);
-    let varyings = PackedTriangleVaryings::<N>::of(triangle);
-    let step = varyings.change(setup.weight_step()).spread();
-    let gradients = S::USES_DERIVATIVES.then(|| {
-        let gradients = gradients_between(triangle.vertices());
-        gradients.map(|weights| varyings.change(weights).spread())
-    });
+    let varyings = PackedTriangleVaryings::<_, N>::of(instructions, triangle);
+    let step = varyings.change(instructions, setup.weight_step()).spread(instructions);
+    let gradients = S::USES_DERIVATIVES.then(
+        #[inline(always)]
+        || {
+            let [dx, dy] = gradients_between(triangle.vertices());
+            [
+                varyings.change(instructions, dx).spread(instructions),
+                varyings.change(instructions, dy).spread(instructions),
+            ]
+        },
+    );
     let last = colors.len() - LANES;
     let mut thrown_away = 0;
     for row in 0..area.rows().len() {
         let (first, covered, weights) = spans.row(row, &area.columns());
-        let start = varyings.at(weights).spread();
-        let mut right = Lanes::splat((covered.start - first) as f32) + Lanes::new(STEPS);
+        let start = varyings.at(instructions, weights).spread(instructions);
+        let mut right = instructions.splat((covered.start - first) as f32) + instructions.lanes(STEPS);
         let mut index = bottom_left + row * stride + (covered.start - area.left) as usize;
         let mut count = covered.end - covered.start;
         while count > 0 {
@@ -244,16 +322,17 @@ fn draw_rows<const PLAIN: bool, S: Shader<N>, const N: usize>(
                 // Fewer than eight are left of the band: the group begins as many before.
                 let before = (index - last) as i32;
                 bits <<= before;
-                right -= Lanes::splat(before as f32);
+                right = right - instructions.splat(before as f32);
                 index = last;
             }
             let (colors, depths) = (eight(colors, index), eight(depths, index));
             fetch_ahead(to_next_band, colors, depths);
             let linear = start.moved(&step, right);
-            thrown_away |= draw_group::<PLAIN, S, N>(frame, linear, &gradients, bits, colors, depths);
+            thrown_away |=
+                draw_group::<PLAIN, I, S, N>(instructions, frame, linear, &gradients, bits, colors, depths);
             index += LANES;
             count -= LANES as i32;
-            right += Lanes::splat(LANES as f32);
+            right = right + instructions.splat(LANES as f32);
         }
     }
     frame.note(thrown_away);
@@ -276,10 +355,11 @@ fn fetch_ahead(to_next_band: usize, colors: &[Color; LANES], depths: &[f32; LANE
 
 /// Tests, shades and writes the covered ones of eight neighbors, a bit for each. Which of them the shader throws away.
 #[inline(always)]
-fn draw_group<const PLAIN: bool, S: Shader<N>, const N: usize>(
+fn draw_group<const PLAIN: bool, I: InstructionSet, S: Shader<N>, const N: usize>(
+    instructions: I,
     frame: &Frame<'_, S, N>,
-    linear: LinearVaryings<Lanes, N>,
-    gradients: &Option<[LinearVaryings<Lanes, N>; 2]>,
+    linear: LinearVaryings<I::Lanes, N>,
+    gradients: &Option<[LinearVaryings<I::Lanes, N>; 2]>,
     covered: i32,
     colors: &mut [Color; LANES],
     depths: &mut [f32; LANES],
@@ -290,9 +370,9 @@ fn draw_group<const PLAIN: bool, S: Shader<N>, const N: usize>(
     // Depth first: what is hidden need not be shaded.
     let is_linear = PLAIN || state.depth_encoding.is_linear_on_screen();
     let depth = if is_linear { linear.depth } else { linear.multiplied(interpolation).w };
-    let stored = Lanes::new(*depths);
+    let stored = instructions.lanes(*depths);
     let test = if PLAIN { DepthTest::LessOrEqual } else { state.merge.depth_test };
-    let seen = covered & passes(test, depth, stored).bits();
+    let seen = covered & instructions.bits(passes(instructions, test, depth, stored));
     if seen == 0 {
         return 0;
     }
@@ -300,50 +380,57 @@ fn draw_group<const PLAIN: bool, S: Shader<N>, const N: usize>(
     let point = linear.multiplied(interpolation);
     let shaded = match gradients {
         Some(gradients) => {
-            let [dx, dy] = gradients.map(|change| change.derivative(&point, interpolation));
+            let [dx, dy] = gradients;
+            let dx = dx.derivative(&point, interpolation);
+            let dy = dy.derivative(&point, interpolation);
             shader.fragment_with_derivatives(point.values, Derivatives { dx, dy })
         }
         None => shader.fragment(point.values),
     };
-    let drawn = seen & shaded.keep.bits();
+    let drawn = seen & instructions.bits(shaded.keep);
 
     // Mostly all eight are written. If not, what is there stays in the other lanes.
-    let there = i32x8::new(colors.map(|color| color.bits() as i32));
+    let there = instructions.words(colors.map(Color::bits));
     let blend = if PLAIN { Blend::Opaque } else { state.merge.blend };
     let mut words = match blend {
-        Blend::Opaque => opaque(shaded.color),
-        blend => packed(blend.apply(shaded.color.channels(), Lanes::channels(there))),
+        Blend::Opaque => opaque(instructions, shaded.color),
+        blend => instructions.packed(blend.apply(shaded.color.channels(), I::Lanes::channels(there))),
     };
     let mut nearest = depth;
     if drawn != ALL {
-        let mask = LaneMask::of_bits(drawn);
-        words = mask.choose(words, there);
-        nearest = Lanes::select(mask, depth, stored);
+        let mask = instructions.mask(drawn);
+        words = instructions.choose(mask, words, there);
+        nearest = I::Lanes::select(mask, depth, stored);
     }
-    *colors = words.to_array().map(|word| Color::from_bits(word as u32));
+    *colors = instructions.word_array(words).map(Color::from_bits);
     if PLAIN || state.merge.depth_write {
-        *depths = nearest.to_array();
+        *depths = instructions.numbers(nearest);
     }
     seen & !drawn
 }
 // ANCHOR_END: rows
 
 #[inline(always)]
-fn passes(test: DepthTest, depth: Lanes, stored: Lanes) -> LaneMask {
+fn passes<I: InstructionSet>(
+    instructions: I,
+    test: DepthTest,
+    depth: I::Lanes,
+    stored: I::Lanes,
+) -> MaskOf<I> {
     match test {
         DepthTest::Less => depth.is_less(stored),
-        DepthTest::LessOrEqual => is_less_or_equal(depth, stored),
-        DepthTest::Greater => is_greater(depth, stored),
+        DepthTest::LessOrEqual => instructions.is_less_or_equal(depth, stored),
+        DepthTest::Greater => stored.is_less(depth),
         DepthTest::Always => Mask::all(true),
     }
 }
 
 /// The words of eight colors through which nothing shines.
 #[inline(always)]
-fn opaque(color: Paint<Lanes>) -> i32x8 {
+fn opaque<I: InstructionSet>(instructions: I, color: Paint<I::Lanes>) -> WordsOf<I> {
     match color {
         Paint::Texel(texels) => texels,
-        Paint::Channels([red, green, blue, _]) => packed([red, green, blue]),
+        Paint::Channels([red, green, blue, _]) => instructions.packed([red, green, blue]),
     }
 }
 

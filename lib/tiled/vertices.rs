@@ -3,12 +3,13 @@
 use std::array::from_fn;
 
 use arrayvec::ArrayVec;
-use bytemuck::cast;
 use glam::{DVec3, DVec4, dvec3};
 use rayon::prelude::*;
-use wide::{CmpEq, CmpGe, CmpGt, CmpLe, f32x8, f64x4, i64x4};
 
-use super::lanes::LANES;
+use super::baseline::Baseline;
+use super::instruction_set::{Four, InstructionSet};
+use super::instructions::{Compiled, Instructions};
+use super::lanes::{Block, LANES};
 use super::snapped::{NO_FRACTIONS, SnappedPosition};
 use crate::clip::{ClipTest, ClipVertex, NdcVertex, Plane};
 use crate::exact::GUARD_BAND;
@@ -28,7 +29,7 @@ pub(super) struct Vertices {
     /// Which planes a vertex lies outside of, a bit each; and the bit below.
     outside: Vec<u8>,
     /// 1/w, depth, V/w: as many blocks of eight numbers for a vertex as it takes.
-    packed: Vec<f32x8>,
+    packed: Vec<Block>,
 }
 
 /// The vertex is not finite, beyond the guard band or too far away on the screen: triangles of it cannot be drawn as they
@@ -39,7 +40,7 @@ pub(super) const NOT_REPRESENTABLE: u8 = 1 << 7;
 #[derive(Clone, Copy)]
 pub(super) struct Triangle<'a> {
     pub(super) positions: [SnappedPosition; 3],
-    pub(super) packed: [&'a [f32x8]; 3],
+    pub(super) packed: [&'a [Block]; 3],
 }
 
 impl Triangle<'_> {
@@ -69,6 +70,21 @@ impl Vertices {
     /// Shades, projects and snaps every vertex of a mesh once.
     pub(super) fn shade<S: Shader<N>, const N: usize>(
         &mut self,
+        instructions: Instructions,
+        mesh: &Mesh<S::Attributes>,
+        shader: &S,
+        projection: &Projection<'_>,
+    ) {
+        match instructions.0 {
+            #[cfg(all(target_arch = "x86_64", not(target_feature = "avx2")))]
+            Compiled::Avx2(avx2) if S::IS_INLINED => self.shade_with(avx2, mesh, shader, projection),
+            _ => self.shade_with(Baseline, mesh, shader, projection),
+        }
+    }
+
+    fn shade_with<I: InstructionSet, S: Shader<N>, const N: usize>(
+        &mut self,
+        instructions: I,
         mesh: &Mesh<S::Attributes>,
         shader: &S,
         projection: &Projection<'_>,
@@ -79,23 +95,33 @@ impl Vertices {
         let blocks = blocks_of(N);
         self.positions.resize(count, [0; 2]);
         self.outside.resize(count, 0);
-        self.packed.resize(count * blocks, f32x8::ZERO);
+        self.packed.resize(count * blocks, Block::ZERO);
         self.each_part(blocks, &|first, Slots { positions, outside, packed }| {
-            // Computed again: so it is a constant in here, and not a captured number.
-            let blocks = blocks_of(N);
-            let slots = positions.as_chunks_mut().0.iter_mut().zip(outside.as_chunks_mut().0);
-            let slots = slots.zip(packed.chunks_exact_mut(AT_A_TIME * blocks));
-            for (four, ((positions, outside), packed)) in slots.enumerate() {
-                let number = |i: usize| (first + four * AT_A_TIME + i).min(vertices.len() - 1);
-                let clip: [ClipVertex<N>; AT_A_TIME] = from_fn(|i| shader.vertex(&vertices[number(i)]));
-                let ndc;
-                (*positions, *outside, ndc) = projection.project(&clip);
-                let packed = packed.chunks_exact_mut(blocks);
-                for ((vertex, position), packed) in clip.iter().zip(ndc).zip(packed) {
-                    let ClipVertex { position: DVec4 { w, .. }, varyings } = *vertex;
-                    pack(&NdcVertex { position, w, varyings }, projection.state.interpolation, packed);
-                }
-            }
+            instructions.run(
+                #[inline(always)]
+                || {
+                    // Computed again: so it is a constant in here, and not a captured number.
+                    let blocks = blocks_of(N);
+                    let slots = positions.as_chunks_mut().0.iter_mut().zip(outside.as_chunks_mut().0);
+                    let slots = slots.zip(packed.chunks_exact_mut(AT_A_TIME * blocks));
+                    for (four, ((positions, outside), packed)) in slots.enumerate() {
+                        let number = |i: usize| (first + four * AT_A_TIME + i).min(vertices.len() - 1);
+                        let clip: [ClipVertex<N>; AT_A_TIME] =
+                            from_fn(|i| shader.vertex(&vertices[number(i)]));
+                        let ndc;
+                        (*positions, *outside, ndc) = projection.project(instructions, &clip);
+                        let packed = packed.chunks_exact_mut(blocks);
+                        for ((vertex, position), packed) in clip.iter().zip(ndc).zip(packed) {
+                            let ClipVertex { position: DVec4 { w, .. }, varyings } = *vertex;
+                            pack(
+                                &NdcVertex { position, w, varyings },
+                                projection.state.interpolation,
+                                packed,
+                            );
+                        }
+                    }
+                },
+            );
         });
     }
     // ANCHOR_END: shade_vertices
@@ -123,7 +149,7 @@ impl Vertices {
         let positions = [a?, b?, c?];
         let first = self.packed.len();
         self.positions.extend(positions);
-        self.packed.resize(first + 3 * blocks_of(N), f32x8::ZERO);
+        self.packed.resize(first + 3 * blocks_of(N), Block::ZERO);
         for (vertex, packed) in triangle.iter().zip(self.packed[first..].chunks_exact_mut(blocks_of(N))) {
             pack(vertex, projection.state.interpolation, packed);
         }
@@ -165,14 +191,15 @@ impl Vertices {
 struct Slots<'a> {
     positions: &'a mut [SnappedPosition],
     outside: &'a mut [u8],
-    packed: &'a mut [f32x8],
+    packed: &'a mut [Block],
 }
 
-fn pack<const N: usize>(vertex: &NdcVertex<N>, interpolation: Interpolation, packed: &mut [f32x8]) {
+#[inline(always)]
+fn pack<const N: usize>(vertex: &NdcVertex<N>, interpolation: Interpolation, packed: &mut [Block]) {
     let linear = LinearVaryings::<f32, N>::new(vertex, interpolation);
     let mut numbers = [linear.distance, linear.depth].into_iter().chain(linear.values);
     for block in packed {
-        *block = f32x8::new(from_fn(|_| numbers.next().unwrap_or(0.0)));
+        *block = Block(from_fn(|_| numbers.next().unwrap_or(0.0)));
     }
 }
 
@@ -185,17 +212,22 @@ pub(super) struct Projection<'a> {
 }
 
 /// A plane, each number for four vertices.
+#[repr(align(32))]
 struct WidePlane {
-    normal: [f64x4; 4],
-    offset: f64x4,
+    normal: [[f64; AT_A_TIME]; 4],
+    offset: [f64; AT_A_TIME],
     /// Its bit.
-    bit: i64,
+    bit: u64,
 }
 
 impl WidePlane {
     fn new((number, plane): (usize, &Plane)) -> Self {
         let (normal, offset) = plane.coefficients();
-        Self { normal: normal.map(f64x4::splat), offset: f64x4::splat(offset), bit: 1 << number }
+        Self {
+            normal: normal.map(|component| [component; AT_A_TIME]),
+            offset: [offset; AT_A_TIME],
+            bit: 1 << number,
+        }
     }
 }
 
@@ -217,42 +249,63 @@ impl<'a> Projection<'a> {
     // ANCHOR: project_vertices
     /// Which planes four points of clip space lie outside of, a bit each.
     #[inline(always)]
-    fn outside(&self, clip: [f64x4; 4]) -> i64x4 {
-        let asked = match self.state.clip_test {
-            ClipTest::BeforeDivide => clip,
-            ClipTest::AfterDivide => clip.map(|component| component / clip[3]),
+    fn outside<I: InstructionSet>(&self, instructions: I, clip: [I::Four; 4]) -> I::Four {
+        let [x, y, z, w] = match (self.state.clip_test, clip[3]) {
+            (ClipTest::BeforeDivide, _) => clip,
+            (ClipTest::AfterDivide, w) => [clip[0] / w, clip[1] / w, clip[2] / w, clip[3] / w],
         };
-        self.wide_planes.iter().fold(i64x4::ZERO, |outside, WidePlane { normal, offset, bit }| {
-            let [x, y, z, w]: [f64x4; 4] = from_fn(|axis| normal[axis] * asked[axis]);
-            let distance = x + y + z + w + *offset;
-            outside | unless(distance.cmp_ge(f64x4::ZERO), *bit)
-        })
+        let zero = instructions.four_of(0.0);
+        let mut outside = zero;
+        for WidePlane { normal, offset, bit } in &self.wide_planes {
+            let distance = instructions.four(normal[0]) * x
+                + instructions.four(normal[1]) * y
+                + instructions.four(normal[2]) * z
+                + instructions.four(normal[3]) * w
+                + instructions.four(*offset);
+            outside = outside.or(unless(instructions, zero.is_less_or_equal(distance), *bit));
+        }
+        outside
     }
 
     /// Projects four vertices: what the functions of the chapters do with one, in the same order.
     #[inline(always)]
-    fn project<const N: usize>(&self, vertices: &[ClipVertex<N>; AT_A_TIME]) -> FourVertices {
-        let positions = vertices.each_ref().map(|vertex| vertex.position.to_array());
-        let clip: [f64x4; 4] = from_fn(|axis| f64x4::new(from_fn(|i| positions[i][axis])));
+    fn project<I: InstructionSet, const N: usize>(
+        &self,
+        instructions: I,
+        vertices: &[ClipVertex<N>; AT_A_TIME],
+    ) -> FourVertices {
+        let [a, b, c, d] = vertices.each_ref().map(|vertex| vertex.position);
+        let clip = [
+            instructions.four([a.x, b.x, c.x, d.x]),
+            instructions.four([a.y, b.y, c.y, d.y]),
+            instructions.four([a.z, b.z, c.z, d.z]),
+            instructions.four([a.w, b.w, c.w, d.w]),
+        ];
         let [x, y, z, w] = clip;
         let ndc = [x / w, y / w, z / w];
+        let (one, half) = (instructions.four_of(1.0), instructions.four_of(0.5));
         let Viewport { x, y, width, height, .. } = self.viewport;
-        let pixels = [(ndc[0], x, width), (ndc[1], y, height)].map(|(along, origin, side)| {
-            f64x4::splat(origin) + (along + f64x4::ONE) * f64x4::HALF * f64x4::splat(side)
-        });
+        let x = instructions.four_of(x) + (ndc[0] + one) * half * instructions.four_of(width);
+        let y = instructions.four_of(y) + (ndc[1] + one) * half * instructions.four_of(height);
 
-        let is_finite = clip.map(|component| is_within(component, f64::MAX));
-        let is_near = [is_within(ndc[0], GUARD_BAND), is_within(ndc[1], GUARD_BAND)];
-        let is_snappable = pixels.map(|along| is_within(along, FARTHEST));
-        let answers = is_finite.into_iter().chain(is_near).chain(is_snappable);
-        let is_ready = answers.fold(w.cmp_gt(f64x4::ZERO), |all, answer| all & answer);
-        let outside = self.outside(clip) | unless(is_ready, NOT_REPRESENTABLE.into());
+        let mut is_ready = instructions.four_of(0.0).is_less(w);
+        for component in clip {
+            is_ready = is_ready & is_within(instructions, component, f64::MAX);
+        }
+        for (along, pixels) in [(ndc[0], x), (ndc[1], y)] {
+            is_ready = is_ready & is_within(instructions, along, GUARD_BAND);
+            is_ready = is_ready & is_within(instructions, pixels, FARTHEST);
+        }
+        let outside =
+            self.outside(instructions, clip).or(unless(instructions, is_ready, NOT_REPRESENTABLE.into()));
 
-        let [x, y] = pixels.map(|along| whole(rounded(along * f64x4::splat(SUBPIXELS as f64))));
-        let ndc = ndc.map(f64x4::to_array);
+        let subpixels = instructions.four_of(SUBPIXELS as f64);
+        let x = whole(instructions, rounded(instructions, x * subpixels));
+        let y = whole(instructions, rounded(instructions, y * subpixels));
+        let ndc = [ndc[0].to_array(), ndc[1].to_array(), ndc[2].to_array()];
         (
             from_fn(|i| [x[i], y[i]]),
-            outside.to_array().map(|bits| bits as u8),
+            outside.to_array().map(|bits| bits.to_bits() as u8),
             from_fn(|i| dvec3(ndc[0][i], ndc[1][i], ndc[2][i])),
         )
     }
@@ -261,23 +314,24 @@ impl<'a> Projection<'a> {
 
 /// Bits where the answer is no.
 #[inline(always)]
-fn unless(answer: f64x4, bits: i64) -> i64x4 {
-    cast::<f64x4, i64x4>(!answer) & i64x4::splat(bits)
+fn unless<I: InstructionSet>(instructions: I, answer: <I::Four as Four>::Mask, bits: u64) -> I::Four {
+    I::Four::select(answer, instructions.four_of(0.0), instructions.four_of(f64::from_bits(bits)))
 }
 
 /// Whether numbers are no farther from zero than this, on either side; not so for NaN.
 #[inline(always)]
-fn is_within(numbers: f64x4, most: f64) -> f64x4 {
-    numbers.abs().cmp_le(f64x4::splat(most))
+fn is_within<I: InstructionSet>(instructions: I, numbers: I::Four, most: f64) -> <I::Four as Four>::Mask {
+    numbers.abs().is_less_or_equal(instructions.four_of(most))
 }
 
 /// The nearest whole numbers, from the middle away from zero, as [`f64::round`] has it; for numbers of less than 2⁵¹.
 #[inline(always)]
-fn rounded(numbers: f64x4) -> f64x4 {
-    let size = numbers.abs();
+fn rounded<I: InstructionSet>(instructions: I, numbers: I::Four) -> I::Four {
+    let (size, no_fractions) = (numbers.abs(), instructions.four_of(NO_FRACTIONS));
     // From the middle to the even one: once too low, perhaps.
-    let nearest = (size + f64x4::splat(NO_FRACTIONS)) - f64x4::splat(NO_FRACTIONS);
-    let too_low = (size - nearest).cmp_eq(f64x4::HALF) & f64x4::ONE;
+    let nearest = (size + no_fractions) - no_fractions;
+    let is_too_low = (size - nearest).is_equal(instructions.four_of(0.5));
+    let too_low = I::Four::select(is_too_low, instructions.four_of(1.0), instructions.four_of(0.0));
     (nearest + too_low).flip_signs(numbers)
 }
 
@@ -285,8 +339,8 @@ fn rounded(numbers: f64x4) -> f64x4 {
 ///
 /// One addition, where `as` tests first whether the number fits.
 #[inline(always)]
-fn whole(numbers: f64x4) -> [i32; AT_A_TIME] {
-    (numbers + f64x4::splat(NO_FRACTIONS)).to_array().map(|number| number.to_bits() as i32)
+fn whole<I: InstructionSet>(instructions: I, numbers: I::Four) -> [i32; AT_A_TIME] {
+    (numbers + instructions.four_of(NO_FRACTIONS)).to_array().map(|number| number.to_bits() as i32)
 }
 
 #[cfg(test)]
@@ -294,6 +348,7 @@ mod tests {
     use super::*;
     use crate::clip::ClipVolume;
     use crate::exact::is_in_guard_band;
+    use crate::tiled::instructions::with_each;
     use glam::dvec4;
     use proptest::prelude::*;
 
@@ -320,27 +375,29 @@ mod tests {
             let state = RenderState { clip_test, clip_volume, viewport, ..RenderState::default() };
             let projection = Projection::new(&state, Rect::sized(640, 480));
             let vertices = clip.map(|position| ClipVertex { position, varyings: [] });
-            let (positions, outside, ndc) = projection.project(&vertices);
-            for i in 0..AT_A_TIME {
-                let one = NdcVertex::<0>::from(vertices[i]);
-                let is_ready = clip[i].is_finite() && clip[i].w > 0.0 && is_in_guard_band(&one);
-                let position = projection.snapped_position(&one).filter(|_| is_ready);
-                prop_assert_eq!(outside[i] & NOT_REPRESENTABLE != 0, position.is_none());
-                if let Some(position) = position {
-                    prop_assert_eq!(positions[i], position);
-                    prop_assert_eq!(ndc[i], one.position);
+            with_each!(instructions => {
+                let (positions, outside, ndc) = projection.project(instructions, &vertices);
+                for i in 0..AT_A_TIME {
+                    let one = NdcVertex::<0>::from(vertices[i]);
+                    let is_ready = clip[i].is_finite() && clip[i].w > 0.0 && is_in_guard_band(&one);
+                    let position = projection.snapped_position(&one).filter(|_| is_ready);
+                    prop_assert_eq!(outside[i] & NOT_REPRESENTABLE != 0, position.is_none());
+                    if let Some(position) = position {
+                        prop_assert_eq!(positions[i], position);
+                        prop_assert_eq!(ndc[i], one.position);
+                    }
+                    let asked = match clip_test {
+                        ClipTest::BeforeDivide => clip[i],
+                        ClipTest::AfterDivide => clip[i] / clip[i].w,
+                    };
+                    let planes = projection.planes.iter().enumerate();
+                    let expected = planes.fold(0, |bits, (number, plane)| {
+                        let is_inside = plane.signed_distance(asked) >= 0.0;
+                        bits | u8::from(!is_inside) << number
+                    });
+                    prop_assert_eq!(outside[i] & !NOT_REPRESENTABLE, expected);
                 }
-                let asked = match clip_test {
-                    ClipTest::BeforeDivide => clip[i],
-                    ClipTest::AfterDivide => clip[i] / clip[i].w,
-                };
-                let planes = projection.planes.iter().enumerate();
-                let expected = planes.fold(0, |bits, (number, plane)| {
-                    let is_inside = plane.signed_distance(asked) >= 0.0;
-                    bits | u8::from(!is_inside) << number
-                });
-                prop_assert_eq!(outside[i] & !NOT_REPRESENTABLE, expected);
-            }
+            });
         }
     }
 
@@ -348,7 +405,9 @@ mod tests {
     fn whole_numbers() {
         let most = 2_147_483_647.0;
         for number in [0.0, -0.0, 1.0, -1.0, 16_777_216.0, -16_777_216.0, most, -most - 1.0] {
-            assert_eq!(whole(f64x4::splat(number)), [number as i32; 4]);
+            with_each!(instructions => {
+                assert_eq!(whole(instructions, instructions.four_of(number)), [number as i32; 4]);
+            });
         }
     }
 
@@ -356,8 +415,11 @@ mod tests {
     fn rounded_as_one_by_one() {
         let below_half = 0.5_f64.next_down();
         for number in [0.0, below_half, 0.5, 1.5, 2.5, 2.499, 16_777_215.5, 16_777_216.5, 1e9 + below_half] {
-            let signs = f64x4::new([number, -number, number + 1.0, -number - 1.0]);
-            assert_eq!(rounded(signs).to_array(), signs.to_array().map(f64::round));
+            let signs = [number, -number, number + 1.0, -number - 1.0];
+            with_each!(instructions => {
+                let rounded = rounded(instructions, instructions.four(signs)).to_array();
+                assert_eq!(rounded, signs.map(f64::round));
+            });
         }
     }
 }

@@ -6,10 +6,11 @@ use rasterbook::clip::{MAX_VERTICES, NdcVertex, clip_triangle, fan};
 use rasterbook::cull::CullMode;
 use rasterbook::exact::Exact;
 use rasterbook::light::lambert;
+use rasterbook::probe::Probe;
 use rasterbook::raster::Rasterizer;
 use rasterbook::real::{Mask, Scalar};
 use rasterbook::texture::{AddressMode, Texture};
-use rasterbook::tiled::Tiled;
+use rasterbook::tiled::{Instructions, Tiled};
 use rasterbook::{
     ClipVertex, Color, LoadOp, Mesh, Real, RenderState, Scanline, Shaded, Shader, Silent, Target, draw,
 };
@@ -81,6 +82,42 @@ impl Contestant for Tiled {
     }
 }
 
+/// `tiled` with no better instructions than those that all of the program is compiled for.
+struct TiledBaseline(Tiled);
+
+impl Default for TiledBaseline {
+    fn default() -> Self {
+        Self(Tiled::new().with_instructions(Instructions::baseline()))
+    }
+}
+
+impl Rasterizer for TiledBaseline {
+    type Depth = f32;
+
+    fn draw<S: Shader<N>, P: Probe + ?Sized, const N: usize>(
+        &self,
+        triangles: impl Iterator<Item = [NdcVertex<N>; 3]>,
+        state: &RenderState,
+        shader: &S,
+        target: &mut Target<f32>,
+        probe: &P,
+    ) {
+        self.0.draw(triangles, state, shader, target, probe);
+    }
+}
+
+impl Contestant for TiledBaseline {
+    fn draw_mesh<S: Shader<N>, const N: usize>(
+        &self,
+        mesh: &Mesh<S::Attributes>,
+        shader: &S,
+        state: &RenderState,
+        target: &mut Target<f32>,
+    ) {
+        self.0.draw_mesh(mesh, shader, state, target);
+    }
+}
+
 const fn ours<Z: Contestant>(name: &'static str, threads: Threads, coverage: Coverage) -> Ours
 where
     Z::Depth: Send,
@@ -89,11 +126,12 @@ where
 }
 
 /// The table of our rasterizers.
-pub(crate) const RASTERIZERS: [Ours; 4] = [
+pub(crate) const RASTERIZERS: [Ours; 5] = [
     ours::<Scanline>("scanline", Threads::One, Coverage::Near),
     ours::<Exact<f64>>("exact-f64", Threads::One, Coverage::Exact),
     ours::<Exact<f32>>("exact-f32", Threads::One, Coverage::Exact),
     ours::<Tiled>("tiled", Threads::Many, Coverage::Exact),
+    ours::<TiledBaseline>("tiled-baseline", Threads::Many, Coverage::Exact),
 ];
 
 /// How all scenes are drawn.
@@ -135,6 +173,7 @@ impl Unlit {
 
 impl Shader<2> for Unlit {
     type Attributes = Vertex;
+    const IS_INLINED: bool = true;
 
     fn vertex(&self, vertex: &Vertex) -> ClipVertex<2> {
         ClipVertex { position: self.0.project(vertex), varyings: vertex.uv.map(f64::from) }
@@ -158,6 +197,7 @@ impl Lit {
 
 impl Shader<5> for Lit {
     type Attributes = Vertex;
+    const IS_INLINED: bool = true;
 
     fn vertex(&self, vertex: &Vertex) -> ClipVertex<5> {
         let ([u, v], [x, y, z]) = (vertex.uv, vertex.normal);
@@ -166,10 +206,11 @@ impl Shader<5> for Lit {
 
     #[inline(always)]
     fn fragment<R: Real>(&self, [u, v, x, y, z]: [R; 5]) -> Shaded<R> {
-        let diffuse = lambert([x, y, z], TO_LIGHT.map(|c| R::of(f64::from(c))));
+        let diffuse = lambert([x, y, z], [R::from(TO_LIGHT[0]), R::from(TO_LIGHT[1]), R::from(TO_LIGHT[2])]);
         let brightness = (diffuse + R::of(f64::from(AMBIENT))).min(R::of(1.0));
         let texel = self.0.texture.nearest([u, v], AddressMode::Repeat);
-        Shaded::opaque(texel.map(|channel| brightness * channel))
+        let [red, green, blue] = texel;
+        Shaded::opaque([brightness * red, brightness * green, brightness * blue])
     }
 }
 
@@ -327,11 +368,13 @@ struct Discard<'a, S>(&'a S);
 
 impl<S: Shader<N>, const N: usize> Shader<N> for Discard<'_, S> {
     type Attributes = S::Attributes;
+    const IS_INLINED: bool = true;
 
     fn vertex(&self, attributes: &S::Attributes) -> ClipVertex<N> {
         self.0.vertex(attributes)
     }
 
+    #[inline(always)]
     fn fragment<R: Real>(&self, _: [R; N]) -> Shaded<R> {
         Shaded::opaque([R::of(0.0); 3]).discard(R::Mask::all(true))
     }

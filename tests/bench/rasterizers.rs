@@ -9,6 +9,7 @@
 //! Times are milliseconds: medians of rounds in which each rasterizer has its turn. See `README.md` in this folder.
 
 mod cores;
+mod machine;
 #[expect(dead_code, reason = "pictures are compared with those of other renderers, in peers/")]
 mod ours;
 mod scenes;
@@ -32,13 +33,14 @@ const TINY: &str = "sphere:100:64x36";
 fn main() -> Result<(), Box<dyn Error>> {
     let options = Options::from_args(std::env::args().skip(1));
     let mut out = stdout().lock();
-    writeln!(out, "milliseconds, medians of {} interleaved rounds\n", options.rounds)?;
+    writeln!(out, "milliseconds, medians of {} interleaved rounds", options.rounds)?;
+    writeln!(out, "{}\n", machine::description())?;
     for name in options.scenes.iter().copied() {
         let scene = Scene::named(name).ok_or("no such scene")?;
         writeln!(out, "{name}: {}", scene.description())?;
         writeln!(
             out,
-            "{:14}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>10}",
+            "{:18}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>10}",
             "", "clear", "vertex", "clip", "setup", "raster", "shade", "frame"
         )?;
         for contender in measured(&scene, &options)? {
@@ -134,7 +136,7 @@ impl std::fmt::Display for Contender {
     /// A row of the table. Some stages are measured together with what must come before them; that is taken off.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let [clear, vertex, clip, setup, raster, shade, frame] = self.times.clone().map(median);
-        write!(f, "{:14}{clear:9.3}{vertex:9.3}{clip:9.3}{setup:9.3}", self.name)?;
+        write!(f, "{:18}{clear:9.3}{vertex:9.3}{clip:9.3}{setup:9.3}", self.name)?;
         write!(f, "{:9.3}", raster - setup)?;
         // What throws its fragments away hides nothing, and may take longer than what is left out if they are kept.
         let shade = shade - clear - raster;

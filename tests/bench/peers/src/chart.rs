@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use crate::machine;
 use crate::table::Table;
 
 const FONT: &str = "font-family=\"sans-serif\" font-size=\"14\"";
@@ -139,7 +140,8 @@ pub(crate) fn curves(title: &str, [x_name, y_name]: [&str; 2], curves: &[Curve])
         inside += &polyline(&[[RIGHT + 16.0, y - 5.0], [RIGHT + 40.0, y - 5.0]], color);
         inside += &text(RIGHT + 48.0, y, "", &curve.name);
     }
-    image(830.0, BOTTOM + 56.0, &inside)
+    inside += &text(LEFT, BOTTOM + 64.0, "font-size=\"12\" fill=\"#555\"", &machine::description());
+    image(830.0, BOTTOM + 80.0, &inside)
 }
 
 /// Points, and lines between them.

@@ -17,6 +17,8 @@ mod contestant;
 mod cores;
 mod euc;
 mod growth;
+#[path = "../../machine.rs"]
+mod machine;
 mod osmesa;
 #[expect(dead_code, reason = "stages are measured by `cargo bench`")]
 #[path = "../../ours.rs"]
@@ -169,7 +171,7 @@ fn five_scenes(options: &Options) -> Result<(), Box<dyn Error>> {
             memory.put(row_of(contestant), name, format!("{mib:.0}"));
         }
     }
-    times.notes.push(format!("medians of {} interleaved rounds; {}", options.rounds, build()));
+    times.notes.push(format!("medians of {} interleaved rounds; {}", options.rounds, machine::description()));
     say(&format!("\n{times}\n{memory}"))?;
     options.save("table.svg", &chart::table(&times))?;
     options.save("memory.svg", &chart::table(&memory))
@@ -181,9 +183,4 @@ fn row_of(contestant: &Contestant) -> Row {
         _ => "two threads",
     };
     Row { group: group.to_owned(), name: contestant.peer.name.to_owned() }
-}
-
-/// For which processors our code and the crates' is built. llvmpipe finds out for itself.
-fn build() -> &'static str {
-    if cfg!(target_feature = "avx2") { "built for processors with AVX2" } else { "built for any processor" }
 }
