@@ -169,7 +169,7 @@ proptest! {
             let (mut pixels, line) = (Vec::new(), Line { a, b, axis });
             dda(a, b, axis, observed(rect), |x, y| pixels.push((x, y)));
             assert!(pixels.iter().all(|&(x, y)| rect.contains(x, y)), "{pixels:?}");
-            assert!(pixels.is_empty() || (a.is_finite() && b.is_finite()));
+            assert!(pixels.is_empty() || (b - a).is_finite());
             assert_eq!(line.is_x_major(), axis == StepAxis::X || line.slope().abs() < 1.0);
         }
     }
@@ -178,7 +178,8 @@ proptest! {
     fn spans_stay_in_the_scissor(triangle in triangle(), walk in walk(), rect in small_rect()) {
         let [a, b, c] = triangle;
         let check = |span: Span| {
-            assert!(span.columns().all(|x| rect.contains(x, span.y)), "{span:?}");
+            let is_covered = |x: f64| span.start - 1.0 < x && x <= span.end;
+            assert!(span.columns().all(|x| is_covered(x.into()) && rect.contains(x, span.y)), "{span:?}");
             let mut columns = Vec::new();
             span.step(a.x, b.y, walk.limit, |x, _| columns.push(x));
             assert!(columns.into_iter().eq(span.columns()));
@@ -224,8 +225,9 @@ proptest! {
     fn clamped_everywhere_nothing_leaves_the_range_of_the_vertices(
         triangle in triangle(), values in numbers::<3>(), rect in small_rect(), edges in walk(),
     ) {
-        prop_assume!(values.iter().all(|value| value.abs() < 1e300));
-        prop_assume!(triangle.iter().all(|vertex| vertex.abs().max_element() < 1e151));
+        // Beyond this, differences and products are infinite.
+        let moderate = |number: f64| if number.abs() < 1e151 { number } else { 1.0 };
+        let (triangle, values) = (triangle.map(|vertex| vertex.map(moderate)), values.map(moderate));
         let walk = Walk { limit: StepLimit::Everywhere, ..edges };
         let [low, high] = [values.into_iter().fold(f64::MAX, f64::min), values.into_iter().fold(f64::MIN, f64::max)];
         // The new point is rounded.
