@@ -96,7 +96,9 @@ fn assert_within<R: Scalar>(channels: [R; 3], [low, high]: [f64; 2]) {
 
 proptest! {
     #[test]
-    fn pixels_outside_are_none(x in any_whole(), y in any_whole(), rect in any_rect()) {
+    fn pixels_outside_are_none(
+        x in prop_oneof![any_whole(), -1..6], y in prop_oneof![any_whole(), -1..5], rect in any_rect(),
+    ) {
         let mut framebuffer = Framebuffer::new(5, 4);
         let (whole, is_inside) = (framebuffer.rect(), framebuffer.rect().contains(x, y));
         framebuffer.set(x, y, Color::RED);
