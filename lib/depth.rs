@@ -170,6 +170,9 @@ impl<D: PartialEq> PartialEq for DepthBuffer<D> {
 
 impl<D: Scalar> DepthBuffer<D> {
     /// A buffer of `width` × `height` depths, all of them 0.
+    ///
+    /// # Panics
+    /// If no memory can hold so many.
     #[must_use]
     pub fn new(width: u32, height: u32) -> Self {
         let values = vec![D::of(0.0); width as usize * height as usize];

@@ -61,9 +61,9 @@ pub struct Line {
 /// ```
 ///
 /// From `b` to `a` the pixels are the same: a line always runs from its left end, or from its lower end if it is y-major.
-/// A point that is not finite draws nothing. Source: book, section 2.1.
+/// A point that is not finite draws nothing, nor does a line so long that its extent is not. Source: book, section 2.1.
 pub fn dda(a: DVec2, b: DVec2, axis: StepAxis, scissor: impl Into<Scissor>, mut emit: impl FnMut(i32, i32)) {
-    if !(a.is_finite() && b.is_finite()) {
+    if !(b - a).is_finite() {
         return;
     }
     let (line, scissor) = (Line { a, b, axis }, scissor.into());

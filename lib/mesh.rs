@@ -109,13 +109,12 @@ impl<A> Mesh<A> {
     #[must_use]
     #[inline]
     pub fn triangle(&self, number: usize) -> [usize; 3] {
-        let first = number * 3;
         match &self.indices {
-            None => [first, first + 1, first + 2],
-            Some(indices) => {
-                let triangle = &indices[first..first + 3];
-                [triangle[0] as usize, triangle[1] as usize, triangle[2] as usize]
+            None => {
+                assert!(number < self.triangle_count(), "there is no triangle {number}");
+                [0, 1, 2].map(|vertex| 3 * number + vertex)
             }
+            Some(indices) => indices.as_chunks::<3>().0[number].map(|index| index as usize),
         }
     }
     // ANCHOR_END: triangles

@@ -260,7 +260,7 @@ impl Span {
     #[must_use]
     pub fn columns(&self) -> Range<i32> {
         let first = (self.start as i32).max(self.scissor.left);
-        let end = (self.end.floor() as i32).saturating_add(1).min(self.scissor.right);
+        let end = ((self.end.floor() + 1.0) as i32).min(self.scissor.right);
         if self.start <= self.end && first < end { first..end } else { 0..0 }
     }
     // ANCHOR_END: span

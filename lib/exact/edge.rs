@@ -291,7 +291,7 @@ impl Coverage {
     }
 
     /// All pixels of the scissor, covered or not, row by row from the bottom, with the values of
-    /// the edge functions at their centers.
+    /// the edge functions at their centers, as far as [`EdgeFunction::at`] reaches.
     pub fn all_pixels<W: Into<Scissor>>(
         &self,
         scissor: W,

@@ -74,7 +74,9 @@ impl Fit {
     #[must_use]
     pub fn mark(&self, point: DVec2, reach: f64) -> Rect {
         let (x, y, reach) = (point.x as i32, point.y as i32, (reach * self.scale).round() as i32);
-        Rect { left: x - reach, bottom: y - reach, right: x + reach + 1, top: y + reach + 1 }
+        let [left, bottom] = [x, y].map(|first| first.saturating_sub(reach));
+        let [right, top] = [x, y].map(|last| last.saturating_add(reach).saturating_add(1));
+        Rect { left, bottom, right, top }
     }
 }
 

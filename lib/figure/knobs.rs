@@ -213,7 +213,7 @@ impl Knob {
     #[must_use]
     pub fn shown(&self, value: Value) -> String {
         match (self.kind, value) {
-            (Kind::Choice(names), Value::Choice(index)) => names[index].to_owned(),
+            (Kind::Choice(names), Value::Choice(index)) if index < names.len() => names[index].to_owned(),
             (_, Value::Switch(on)) => if on { "on" } else { "off" }.to_owned(),
             (_, Value::Number(value)) => format!("{value}"),
             (_, Value::Whole(value)) => format!("{value}"),

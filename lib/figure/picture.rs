@@ -25,6 +25,9 @@ impl Zoom {
     const SHOWN: (u32, u32) = (1280, 960);
 
     /// The part of a picture that is shown: around the center, moved so that it lies inside the picture.
+    ///
+    /// # Panics
+    /// If the factor is 0.
     #[must_use]
     pub fn part(self, whole: Rect) -> Rect {
         self.part_within(whole, Self::SHOWN)
@@ -34,7 +37,7 @@ impl Zoom {
     pub(crate) fn part_within(self, whole: Rect, (width, height): (u32, u32)) -> Rect {
         let range = |center: Option<i32>, side: i32, shown: u32| {
             let count = if self.factor == 1 { side } else { side.min((shown / self.factor).max(1) as i32) };
-            let first = (center.unwrap_or(side / 2) - count / 2).clamp(0, side - count);
+            let first = center.unwrap_or(side / 2).saturating_sub(count / 2).clamp(0, side - count);
             (first, first + count)
         };
         let (left, right) = range(self.center.map(|(x, _)| x), whole.right, width);
@@ -57,6 +60,9 @@ pub fn enlarged(picture: &Framebuffer, factor: u32) -> Framebuffer {
 }
 
 /// The part of a picture around the zoom's center, each pixel as a block, in a frame that numbers its columns and rows.
+///
+/// # Panics
+/// As [`enlarged`] and [`Zoom::part`] do.
 #[must_use]
 pub fn zoomed(picture: &Framebuffer, zoom: Zoom) -> Framebuffer {
     let part = zoom.part(picture.rect());
@@ -81,8 +87,9 @@ pub(crate) const fn block((x, y): Pixel, factor: u32, origin: Pixel) -> Rect {
 
 /// A part of a picture, each pixel as a block, with a thin grid if the blocks are large enough.
 fn blocks(picture: &Framebuffer, part: Rect, factor: u32) -> Framebuffer {
-    let mut result =
-        Framebuffer::new(part.columns().len() as u32 * factor, part.rows().len() as u32 * factor);
+    let [width, height] =
+        [part.columns(), part.rows()].map(|side| (side.len() as u32).saturating_mul(factor));
+    let mut result = Framebuffer::new(width, height);
     fill_blocks(&mut result, picture, part, factor);
     result
 }
@@ -141,7 +148,7 @@ pub fn draw_enlarged_within(
 pub fn paste(into: &mut Framebuffer, picture: &Framebuffer, left: i32, bottom: i32) {
     for y in picture.rect().rows() {
         for x in picture.rect().columns() {
-            into.set(left + x, bottom + y, picture.get(x, y).unwrap_or_default());
+            into.set(left.saturating_add(x), bottom.saturating_add(y), picture.get(x, y).unwrap_or_default());
         }
     }
 }
