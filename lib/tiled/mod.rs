@@ -89,6 +89,7 @@ use baseline::Baseline;
 use frame::{Frame, is_plain};
 use front::{Front, Source};
 use instruction_set::InstructionSet;
+#[cfg(all(target_arch = "x86_64", not(target_feature = "avx2")))]
 use instructions::Compiled;
 use tile::Tile;
 

@@ -8,7 +8,9 @@ use rayon::prelude::*;
 
 use super::baseline::Baseline;
 use super::instruction_set::{Four, InstructionSet};
-use super::instructions::{Compiled, Instructions};
+#[cfg(all(target_arch = "x86_64", not(target_feature = "avx2")))]
+use super::instructions::Compiled;
+use super::instructions::Instructions;
 use super::lanes::{Block, LANES};
 use super::snapped::{NO_FRACTIONS, SnappedPosition};
 use crate::clip::{ClipTest, ClipVertex, NdcVertex, Plane};
