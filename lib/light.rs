@@ -30,8 +30,13 @@ pub fn dot<R: Real>(a: Vector<R>, b: Vector<R>) -> R {
 #[must_use]
 #[inline(always)]
 pub fn normalize<R: Real>(v: Vector<R>) -> Vector<R> {
-    let length = dot(v, v).sqrt();
-    [v[0] / length, v[1] / length, v[2] / length]
+    scale_down(v, dot(v, v).sqrt())
+}
+
+/// v / s.
+#[inline(always)]
+fn scale_down<R: Real>(v: Vector<R>, s: R) -> Vector<R> {
+    [v[0] / s, v[1] / s, v[2] / s]
 }
 
 /// v · s.
@@ -163,9 +168,7 @@ fn power<R: Real>(base: R, exponent: f64) -> R {
 #[must_use]
 #[cfg_attr(not(debug_assertions), inline(always))]
 pub fn mapped_normal<R: Real>(texel: Vector<R>, [t, b, n]: [Vector<R>; 3]) -> Vector<R> {
-    let one = R::of(1.0);
-    let [x, y, z] =
-        subtract([texel[0] / R::of(127.5), texel[1] / R::of(127.5), texel[2] / R::of(127.5)], [one; 3]);
+    let [x, y, z] = subtract(scale_down(texel, R::of(127.5)), [R::of(1.0); 3]);
     normalize(add(add(scale(t, x), scale(b, y)), scale(n, z)))
 }
 // ANCHOR_END: mapped_normal
@@ -197,8 +200,7 @@ impl Light {
             Self::Point { position: [x, y, z], intensity } => {
                 let offset = subtract([R::of(x), R::of(y), R::of(z)], place);
                 let distance = dot(offset, offset).sqrt();
-                let to_light = [offset[0] / distance, offset[1] / distance, offset[2] / distance];
-                (to_light, R::of(intensity) * attenuation(distance))
+                (scale_down(offset, distance), R::of(intensity) * attenuation(distance))
             }
         }
     }

@@ -292,9 +292,9 @@ def slow(display, folder, binaries):
     """Chapter 10: a picture that takes long is a draft until it is there."""
     program = Program(display, folder, binaries, "ch10_matrices_lighting", "still-life", "--size", "640x480")
     program.shows(program.drawn(), "the first picture")
-    program.key("r", " scanline .*a draft")
+    program.key("r", " scanline .*drawing")
     program.shows(program.drawn("--rasterizer", "scanline"), "R, another rasterizer, slowly")
-    program.wait(lambda: "a draft" not in program.title(), "end of the draft")
+    program.wait(lambda: "drawing" not in program.title(), "end of drawing")
     for _ in range(12):
         program.key("Right")
     program.shows(program.drawn("--rasterizer", "scanline", "--set", "azimuth=32"), "a knob, twelve times")

@@ -39,8 +39,8 @@ const ROOM: (u32, u32) = (640, 480);
 /// The most pictures a second.
 const RATE: usize = 60;
 /// How long the window waits for a picture before it shows a draft.
-const PATIENCE: Duration = Duration::from_millis(12);
-/// From here on, and where it is not known, a draft's sides are a fourth as long, below half as long.
+const PATIENCE: Duration = Duration::from_millis(8);
+/// Of a picture that takes so long, a draft's sides are a fourth as long; of others, half as long.
 const LONG: Duration = Duration::from_millis(80);
 
 /// Opens the window on a variant, and returns when it is closed. What is saved goes to `destination`.
@@ -360,7 +360,7 @@ impl Viewer<'_> {
         Ok(())
     }
 
-    /// Gets the picture of now; a draft, if it takes long.
+    /// Gets the picture of now; a draft, if it takes long. What was shown before stays until there is either.
     fn paint(&mut self) -> Result<(), Gone> {
         if self.shown.whole_of == self.changes {
             return Ok(());
@@ -372,9 +372,10 @@ impl Viewer<'_> {
             self.take(finished);
         }
         if self.shown.picture_of != self.changes {
-            let is_short = self.shown.took_by == Some(self.drawn_by()) && self.shown.took < LONG;
-            let divisor = if is_short { 2 } else { 4 };
-            if let Some(draft) = self.live.draft(divisor) {
+            // How long a draft takes is known from the whole picture. Before the first, there may be files to read, too.
+            let is_known = self.shown.took_by == Some(self.drawn_by());
+            let divisor = if self.shown.took < LONG { 2 } else { 4 };
+            if let Some(draft) = is_known.then(|| self.live.draft(divisor)).flatten() {
                 self.shown.show(draft, self.changes);
             }
         }
@@ -407,8 +408,8 @@ impl Viewer<'_> {
             Some(format!(" · {}", Live::told(pixel, self.shown.whole.as_ref()?.get(pixel.0, pixel.1)?)))
         });
         let took = self.shown.took.as_secs_f64() * 1e3;
-        let draft = if self.shown.whole.is_some() { "" } else { " · a draft" };
-        let title = format!("{}{draft} · {took:.1} ms{}", self.live.status(), under.unwrap_or_default());
+        let drawing = if self.shown.whole_of == self.changes { "" } else { " · drawing" };
+        let title = format!("{}{drawing} · {took:.1} ms{}", self.live.status(), under.unwrap_or_default());
         if title != self.shown.title {
             window.set_title(&title);
             self.shown.title = title;
