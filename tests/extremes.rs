@@ -260,11 +260,16 @@ proptest! {
     }
 }
 
+/// A number as bits, zeros with their signs; all NaN are one: which of them it is, the processor chooses.
+fn bits_of(number: f64) -> u64 {
+    if number.is_nan() { f64::NAN.to_bits() } else { number.to_bits() }
+}
+
 fn perspective_weights_of<R: Scalar>(numbers: [f64; 6]) {
     let numbers: [R; 6] = reals(numbers);
     let [weights, w] = [0, 3].map(|first| from_fn(|i| numbers[first + i]));
     let corrected = perspective_weights(weights, w);
-    let bits = |numbers: [R; 3]| numbers.map(|number| Into::<f64>::into(number).to_bits());
+    let bits = |numbers: [R; 3]| numbers.map(|number| bits_of(number.into()));
     if w.contains(&R::of(0.0)) {
         assert_eq!(bits(corrected), bits(weights), "they stay as they are");
     }
@@ -397,9 +402,9 @@ fn assert_depths<R: Scalar>(numbers: [f64; 2], (x, y): (i32, i32)) {
         assert!(test == DepthTest::Always || !(passes && is_none), "NaN passes {test:?}");
         let is_inside = target.color.rect().contains(x, y);
         assert_eq!(target.depth.test_and_set(x, y, depth, test), passes && is_inside);
-        let bits = target.depth.get(x, y).map(|depth| Into::<f64>::into(depth).to_bits());
+        let bits = target.depth.get(x, y).map(|depth| bits_of(depth.into()));
         let expected: f64 = if passes { depth } else { stored }.into();
-        assert_eq!(bits, is_inside.then_some(expected.to_bits()));
+        assert_eq!(bits, is_inside.then_some(bits_of(expected)));
         for depth_write in [false, true] {
             let options = Merge { depth_test: test, depth_write, blend: Blend::Additive };
             let shaded = Shaded::translucent([depth; 3], stored);
