@@ -3,6 +3,7 @@
 mod painter;
 
 use std::cell::RefCell;
+use std::io;
 use std::rc::Rc;
 use std::thread::scope;
 use std::time::{Duration, Instant};
@@ -15,7 +16,7 @@ use super::failure::Failure;
 use super::output::{Destination, note, say};
 use super::scenes::{load, picture_name, runtime_failure, scene_of, sweepable};
 use crate::color::Color;
-use crate::figure::{Chapter, RasterizerChoice, Variant};
+use crate::figure::{Chapter, Variant};
 use crate::framebuffer::Framebuffer;
 use crate::inspect::heat_legend;
 use crate::live::{Event, Live, View};
@@ -79,9 +80,8 @@ fn show(live: Live<'_>, destination: &Destination) -> Result<(), Failure> {
     scope(|scope| {
         let mut view = Viewer {
             live,
-            painter: Painter::start(scope).map_err(|error| {
-                Failure::Runtime(format!("the thread that draws cannot be started: {error}"))
-            })?,
+            painter: Painter::start(scope).map_err(no_thread)?,
+            drafter: Painter::start(scope).map_err(no_thread)?,
             changes: 1,
             destination,
             shown: Shown::default(),
@@ -101,6 +101,10 @@ fn show(live: Live<'_>, destination: &Destination) -> Result<(), Failure> {
         ));
         Ok(())
     })
+}
+
+fn no_thread(error: io::Error) -> Failure {
+    Failure::Runtime(format!("the thread that draws cannot be started: {error}"))
 }
 
 fn gone(_: Gone) -> Failure {
@@ -143,15 +147,15 @@ struct Shown {
     /// After how many changes each was drawn.
     whole_of: u64,
     picture_of: u64,
+    /// After how many changes a draft was begun last.
+    drafted: u64,
     buffer: Vec<u32>,
     size: (usize, usize),
     title: String,
     took: Duration,
-    /// What was drawn in that time.
-    took_by: Option<(&'static str, RasterizerChoice)>,
     count: u32,
     slowest: Duration,
-    /// The longest time in which the window did nothing else than to wait for a picture or to draw a draft.
+    /// The longest time in which the window waited for a picture.
     longest_wait: Duration,
 }
 
@@ -191,7 +195,10 @@ impl Layout {
 
 struct Viewer<'a> {
     live: Live<'a>,
+    /// Draws whole pictures.
     painter: Painter<'a>,
+    /// Draws drafts.
+    drafter: Painter<'a>,
     /// How often what is looked at has changed.
     changes: u64,
     destination: &'a Destination,
@@ -367,38 +374,40 @@ impl Viewer<'_> {
         }
         let finished = self.painter.finished(Duration::ZERO)?;
         self.take(finished);
-        if self.shown.whole_of != self.changes && self.painter.begin(self.changes, &self.live)? {
+        if self.shown.whole_of != self.changes && self.painter.begin(self.changes, &self.live, 1)? {
             let finished = self.painter.finished(PATIENCE)?;
             self.take(finished);
         }
-        if self.shown.picture_of != self.changes {
-            // How long a draft takes is known from the whole picture. Before the first, there may be files to read, too.
-            let is_known = self.shown.took_by == Some(self.drawn_by());
-            let divisor = if self.shown.took < LONG { 2 } else { 4 };
-            if let Some(draft) = is_known.then(|| self.live.draft(divisor)).flatten() {
-                self.shown.show(draft, self.changes);
-            }
+        let draft = self.drafter.finished(Duration::ZERO)?;
+        self.take_draft(draft);
+        let is_wanted = self.shown.whole_of != self.changes && self.shown.drafted != self.changes;
+        let divisor = if self.shown.took < LONG { 2 } else { 4 };
+        if is_wanted && self.drafter.begin(self.changes, &self.live, divisor)? {
+            self.shown.drafted = self.changes;
         }
         Ok(())
     }
 
-    /// Which variant is drawn, and with which rasterizer: what decides how long it takes.
-    fn drawn_by(&self) -> (&'static str, RasterizerChoice) {
-        let scene = self.live.scene();
-        (scene.variant.name, scene.rasterizer)
-    }
-
-    /// Shows a picture if it is that of now.
+    /// Shows a whole picture if it is that of now.
     fn take(&mut self, painted: Option<Painted>) {
-        let Some(Painted { number, picture, took }) = painted else {
+        let Some(Painted { number, picture: Some(picture), took }) = painted else {
             return;
         };
-        let by = self.drawn_by();
         let shown = &mut self.shown;
         (shown.took, shown.slowest, shown.count) = (took, shown.slowest.max(took), shown.count + 1);
         if number == self.changes {
             shown.show(self.live.shown(picture.clone()), number);
-            (shown.whole, shown.whole_of, shown.took_by) = (Some(picture), number, Some(by));
+            (shown.whole, shown.whole_of) = (Some(picture), number);
+        }
+    }
+
+    /// Shows a draft if nothing newer is shown: while something moves it may always be a little late.
+    fn take_draft(&mut self, painted: Option<Painted>) {
+        if let Some(Painted { number, picture: Some(draft), .. }) = painted
+            && number > self.shown.picture_of
+            && self.live.zoom().is_none()
+        {
+            self.shown.show(draft, number);
         }
     }
 

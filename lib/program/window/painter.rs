@@ -1,8 +1,9 @@
 //! Draws pictures beside the window, so that the window never waits for one that takes long.
 //!
 //! ```text
-//!   window    change 1 ──► begins 1 ┄┄ waits a little ┄┄► a draft of 1     change 2 ──► a draft of 2      shows 2
-//!   painter                ░░░░░░░░░░░░ draws 1 ░░░░░░░░░░░░░░░░░░░░░░░░░░░░░░░░│ draws 2 ░░░░░░░░░░░░│
+//!   window     change 1 ──► begins 1 ┄ waits a little ┄► begins a draft    shows it   shows 1
+//!   painter                 ░░░░░░░░░ the whole picture ░░░░░░░░░░░░░░░░░░░░░░░░░░░░░│
+//!   another painter                                      ░░░░ a draft ░░░░│
 //! ```
 
 use std::io;
@@ -15,17 +16,25 @@ use crate::live::Live;
 
 /// A thread that draws one picture at a time.
 pub(super) struct Painter<'a> {
-    orders: Sender<(u64, Live<'a>)>,
+    orders: Sender<Order<'a>>,
     pictures: Receiver<Painted>,
     is_busy: bool,
+}
+
+/// What to draw.
+struct Order<'a> {
+    number: u64,
+    live: Live<'a>,
+    /// The divisor of a draft; 1 for the whole picture.
+    divisor: u32,
 }
 
 /// A picture that has been drawn.
 pub(super) struct Painted {
     /// The number with which it was begun.
     pub(super) number: u64,
-    /// The whole picture, not magnified.
-    pub(super) picture: Framebuffer,
+    /// The whole picture, not magnified, or a draft; `None` if there is no draft of it.
+    pub(super) picture: Option<Framebuffer>,
     /// How long it took.
     pub(super) took: Duration,
 }
@@ -43,12 +52,12 @@ impl<'a> Painter<'a> {
     where
         'a: 'scope,
     {
-        let (orders, inbox) = channel::<(u64, Live<'a>)>();
+        let (orders, inbox) = channel::<Order<'a>>();
         let (outbox, pictures) = channel();
         let paint = move || {
-            for (number, live) in inbox {
+            for Order { number, live, divisor } in inbox {
                 let begun = Instant::now();
-                let picture = live.whole_picture();
+                let picture = if divisor == 1 { Some(live.whole_picture()) } else { live.draft(divisor) };
                 // Nobody takes it when the window has been closed.
                 let _ = outbox.send(Painted { number, picture, took: begun.elapsed() });
             }
@@ -57,12 +66,13 @@ impl<'a> Painter<'a> {
         Ok(Self { orders, pictures, is_busy: false })
     }
 
-    /// Begins a picture, unless another one is still being drawn. Whether it has begun.
-    pub(super) fn begin(&mut self, number: u64, live: &Live<'a>) -> Result<bool, Gone> {
+    /// Begins a picture, unless another one is still being drawn: a draft with this divisor, or with 1 the whole one. Whether it
+    /// has begun.
+    pub(super) fn begin(&mut self, number: u64, live: &Live<'a>, divisor: u32) -> Result<bool, Gone> {
         if self.is_busy {
             return Ok(false);
         }
-        self.orders.send((number, live.clone())).map_err(|_| Gone)?;
+        self.orders.send(Order { number, live: live.clone(), divisor }).map_err(|_| Gone)?;
         self.is_busy = true;
         Ok(true)
     }
