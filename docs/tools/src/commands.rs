@@ -7,6 +7,11 @@ use std::process::Command;
 
 use crate::{Errors, files, pages, read, repository};
 
+/// Whether there is a test program of this name: a file, or a folder with a `main.rs`.
+fn is_test(root: &Path, name: &str) -> bool {
+    [format!("tests/{name}.rs"), format!("tests/{name}/main.rs")].iter().any(|path| root.join(path).is_file())
+}
+
 /// Runs what can be run, in a folder of its own, and says what was left out and why.
 pub fn run() -> Result<(), Errors> {
     let root = repository();
@@ -30,7 +35,7 @@ pub fn run() -> Result<(), Errors> {
             let name = page.strip_prefix(&root).unwrap_or(&page).display();
             match task(&command) {
                 Task::LeaveOut(why) => println!("left out, {why}: {command}"),
-                Task::Test(name) if root.join(format!("tests/{name}.rs")).is_file() => {
+                Task::Test(name) if is_test(&root, &name) => {
                     println!("left out, a test: {command}");
                 }
                 Task::Test(_) => errors.push(format!("{name}: {command}: no such test")),
