@@ -1,6 +1,6 @@
 //! Bytes as files.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use rasterbook::files::{FileError, decode_texture};
@@ -63,9 +63,11 @@ fn is_printable(text: &str) -> bool {
 
 /// A folder of this process, where a model names its materials.
 fn folder() -> &'static Path {
-    static FOLDER: OnceLock<std::path::PathBuf> = OnceLock::new();
+    static FOLDER: OnceLock<PathBuf> = OnceLock::new();
     FOLDER.get_or_init(|| {
-        let folder = std::env::temp_dir().join(format!("rasterbook-fuzz-{}", std::process::id()));
+        // Tests have a folder in target/.
+        let folder = option_env!("CARGO_TARGET_TMPDIR").map_or_else(std::env::temp_dir, PathBuf::from);
+        let folder = folder.join(format!("rasterbook-fuzz-{}", std::process::id()));
         std::fs::create_dir_all(&folder).expect("a folder for temporary files");
         folder
     })
