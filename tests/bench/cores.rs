@@ -4,7 +4,7 @@
 /// Keeps a thread on the core of this number, counted round the cores that there are. `thread` is the system's number, 0
 /// the calling thread. Only on Linux; where it is not allowed, nothing happens.
 #[cfg(target_os = "linux")]
-pub(crate) fn keep_on_core(thread: i32, core: usize) {
+pub fn keep_on_core(thread: i32, core: usize) {
     use nix::sched::{CpuSet, sched_setaffinity};
     use nix::unistd::Pid;
     use std::sync::LazyLock;
@@ -21,4 +21,4 @@ pub(crate) fn keep_on_core(thread: i32, core: usize) {
 
 /// Other systems place threads as they see fit.
 #[cfg(not(target_os = "linux"))]
-pub(crate) fn keep_on_core(_: i32, _: usize) {}
+pub fn keep_on_core(_: i32, _: usize) {}

@@ -2,27 +2,21 @@
 //!
 //! ```text
 //! cargo bench                                      all of it
-//! cargo bench --bench rasterizers -- --quick       few rounds
-//! cargo bench --bench rasterizers -- S1 S3 exact   only what has these words in its name
+//! cargo bench -p rasterbook-bench -- --quick       few rounds, and no more compiled than they need
+//! cargo bench -p rasterbook-bench -- S1 S3 exact   only what has these words in its name
 //! ```
 //!
 //! Times are milliseconds: medians of rounds in which each rasterizer has its turn. See `README.md` in this folder.
 
-mod cores;
-mod machine;
-#[expect(dead_code, reason = "pictures are compared with those of other renderers, in peers/")]
-mod ours;
-mod scenes;
-mod timing;
-
 use std::error::Error;
 use std::io::{Write, stdout};
 
-use cores::keep_on_core;
-use ours::{Ours, RASTERIZERS, Stage, Stages, Threads};
+use rasterbook_bench::cores::keep_on_core;
+use rasterbook_bench::machine;
+use rasterbook_bench::ours::{Ours, RASTERIZERS, Stage, Stages, Threads};
+use rasterbook_bench::scenes::{NAMES, Scene};
+use rasterbook_bench::timing::{median, milliseconds, runs_for};
 use rayon::{ThreadPool, ThreadPoolBuilder};
-use scenes::{NAMES, Scene};
-use timing::{median, milliseconds, runs_for};
 
 /// What is measured, in the order of the table.
 const STAGES: [Stage; 7] =

@@ -10,7 +10,7 @@ const SHORTEST: f64 = 150.0;
 const MOST_RUNS: u32 = 1000;
 
 /// Milliseconds that some work takes, when it is done `runs` times.
-pub(crate) fn milliseconds(runs: u32, mut work: impl FnMut()) -> f64 {
+pub fn milliseconds(runs: u32, mut work: impl FnMut()) -> f64 {
     let start = Instant::now();
     for _ in 0..runs {
         work();
@@ -19,12 +19,12 @@ pub(crate) fn milliseconds(runs: u32, mut work: impl FnMut()) -> f64 {
 }
 
 /// How often work that takes so long is done in one measurement.
-pub(crate) fn runs_for(milliseconds: f64) -> u32 {
+pub fn runs_for(milliseconds: f64) -> u32 {
     (SHORTEST / milliseconds.max(1e-6)).ceil().clamp(1.0, f64::from(MOST_RUNS)) as u32
 }
 
 /// The value in the middle; 0 if there is none.
-pub(crate) fn median(mut values: Vec<f64>) -> f64 {
+pub fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     match values.len() {
         0 => 0.0,

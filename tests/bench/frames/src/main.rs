@@ -11,12 +11,10 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use rasterbook::figure::{Given, RasterizerChoice, Scene, Variant};
+use rasterbook_bench::timing;
 
 #[path = "../../../../docs/live/src/chapters.rs"]
 mod chapters;
-#[allow(dead_code, reason = "only medians are taken here")]
-#[path = "../../timing.rs"]
-mod timing;
 
 /// How often a picture is drawn.
 const ROUNDS: usize = 9;

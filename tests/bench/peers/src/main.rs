@@ -13,24 +13,13 @@
 mod chart;
 mod check;
 mod contestant;
-#[path = "../../cores.rs"]
-mod cores;
 mod euc;
 mod growth;
-#[path = "../../machine.rs"]
-mod machine;
 mod osmesa;
-#[expect(dead_code, reason = "stages are measured by `cargo bench`")]
-#[path = "../../ours.rs"]
-mod ours;
 mod peers;
 mod picture;
 mod retrofire;
-#[path = "../../scenes.rs"]
-mod scenes;
 mod table;
-#[path = "../../timing.rs"]
-mod timing;
 
 use std::error::Error;
 use std::fs;
@@ -38,11 +27,12 @@ use std::io::{Write, stdout};
 use std::path::PathBuf;
 
 use contestant::{CHILD, Contestant};
-use ours::Threads;
 use peers::{Peer, REFERENCE};
-use scenes::{NAMES, Scene};
+use rasterbook_bench::machine;
+use rasterbook_bench::ours::Threads;
+use rasterbook_bench::scenes::{NAMES, Scene};
+use rasterbook_bench::timing::{median, runs_for};
 use table::{Row, Table};
-use timing::{median, runs_for};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let args: Vec<String> = std::env::args().skip(1).collect();
