@@ -1,7 +1,4 @@
-//! What the benchmarks share: scenes, our rasterizers ready to draw them, and how times are taken.
+//! How times are taken, by all benchmarks.
 
 pub mod cores;
-pub mod machine;
-pub mod ours;
-pub mod scenes;
 pub mod timing;

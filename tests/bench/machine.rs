@@ -3,7 +3,7 @@
 use rasterbook::tiled::{Instructions, Tiled};
 
 /// The instructions that the program is compiled for, those that `tiled` draws with, and the processor.
-pub fn description() -> String {
+pub(crate) fn description() -> String {
     let (baseline, chosen) = (Instructions::baseline(), Tiled::new().instructions());
     format!("compiled for {baseline}, tiled draws with {chosen}, on {}", processor())
 }

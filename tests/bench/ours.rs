@@ -18,7 +18,7 @@ use rasterbook::{
 use crate::scenes::{AMBIENT, Scene, TEXTURE_SIDE, TO_LIGHT, Vertex, texels};
 
 /// Something that draws a scene again and again.
-pub trait Frame {
+pub(crate) trait Frame {
     /// Clears and draws, until all pixels are in memory.
     fn draw(&mut self);
     /// What was drawn last: the channels of all pixels, the lowest row first.
@@ -27,22 +27,22 @@ pub trait Frame {
 
 /// One of our rasterizers.
 #[derive(Clone, Copy, Debug)]
-pub struct Ours {
+pub(crate) struct Ours {
     /// As tables call it.
-    pub name: &'static str,
+    pub(crate) name: &'static str,
     /// How many threads it can use.
-    pub threads: Threads,
+    pub(crate) threads: Threads,
     /// Which pixels it covers.
-    pub coverage: Coverage,
+    pub(crate) coverage: Coverage,
     /// Makes a scene ready to be drawn.
-    pub prepare: fn(Scene) -> Box<dyn Frame + Send>,
+    pub(crate) prepare: fn(Scene) -> Box<dyn Frame + Send>,
     /// Makes a scene ready to be drawn stage by stage.
-    pub stages: fn(Scene) -> Box<dyn Stages + Send>,
+    pub(crate) stages: fn(Scene) -> Box<dyn Stages + Send>,
 }
 
 /// How many threads a renderer can use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Threads {
+pub(crate) enum Threads {
     /// The caller's.
     One,
     /// As many as its pool has.
@@ -51,7 +51,7 @@ pub enum Threads {
 
 /// Which pixels a renderer covers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Coverage {
+pub(crate) enum Coverage {
     /// Those that the graphics standards prescribe.
     Exact,
     /// Nearly those.
@@ -131,7 +131,7 @@ where
 }
 
 /// The table of our rasterizers.
-pub const RASTERIZERS: [Ours; 5] = [
+pub(crate) const RASTERIZERS: [Ours; 5] = [
     ours::<Scanline>("scanline", Threads::One, Coverage::Near),
     ours::<Exact<f64>>("exact-f64", Threads::One, Coverage::Exact),
     ours::<Exact<f32>>("exact-f32", Threads::One, Coverage::Exact),
@@ -277,7 +277,7 @@ where
 
 /// What can be done alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stage {
+pub(crate) enum Stage {
     /// All pixels get the background's color and depth.
     Clear,
     /// The vertex shader.
@@ -295,7 +295,7 @@ pub enum Stage {
 }
 
 /// A scene that can be drawn stage by stage: each of them with what the stage before it has left.
-pub trait Stages {
+pub(crate) trait Stages {
     /// Does what is to be done in one stage.
     fn run(&mut self, stage: Stage);
 }

@@ -8,15 +8,19 @@
 //!
 //! Times are milliseconds: medians of rounds in which each rasterizer has its turn. See `README.md` in this folder.
 
+mod machine;
+#[expect(dead_code, reason = "pictures are compared with those of other renderers, in peers/")]
+mod ours;
+mod scenes;
+
 use std::error::Error;
 use std::io::{Write, stdout};
 
+use ours::{Ours, RASTERIZERS, Stage, Stages, Threads};
 use rasterbook_bench::cores::keep_on_core;
-use rasterbook_bench::machine;
-use rasterbook_bench::ours::{Ours, RASTERIZERS, Stage, Stages, Threads};
-use rasterbook_bench::scenes::{NAMES, Scene};
 use rasterbook_bench::timing::{median, milliseconds, runs_for};
 use rayon::{ThreadPool, ThreadPoolBuilder};
+use scenes::{NAMES, Scene};
 
 /// What is measured, in the order of the table.
 const STAGES: [Stage; 7] =

@@ -9,13 +9,13 @@ use glam::dvec3;
 use rasterbook::transform::Frustum;
 
 /// Towards the light.
-pub const TO_LIGHT: [f32; 3] = [0.577, 0.577, -0.577];
+pub(crate) const TO_LIGHT: [f32; 3] = [0.577, 0.577, -0.577];
 /// The light that is everywhere.
-pub const AMBIENT: f32 = 0.2;
+pub(crate) const AMBIENT: f32 = 0.2;
 /// Texels in a row, and rows, of the texture.
-pub const TEXTURE_SIDE: u32 = 512;
+pub(crate) const TEXTURE_SIDE: u32 = 512;
 /// The five scenes.
-pub const NAMES: [&str; 5] = ["S1", "S2", "S3", "S4", "S5"];
+pub(crate) const NAMES: [&str; 5] = ["S1", "S2", "S3", "S4", "S5"];
 
 const NEAR: f64 = 2.0;
 const FAR: f64 = 10.0;
@@ -27,33 +27,33 @@ const BEYOND: f64 = 1.02;
 /// What is known of a vertex. Camera space.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
-pub struct Vertex {
+pub(crate) struct Vertex {
     /// Where it is.
-    pub position: [f32; 3],
+    pub(crate) position: [f32; 3],
     /// The surface's normal there, of length 1.
-    pub normal: [f32; 3],
+    pub(crate) normal: [f32; 3],
     /// The place in the texture.
-    pub uv: [f32; 2],
+    pub(crate) uv: [f32; 2],
 }
 
 /// Something to draw, and from where.
 #[derive(Clone, Debug)]
-pub struct Scene {
+pub(crate) struct Scene {
     /// The width and height of the picture, in pixels.
-    pub size: [u32; 2],
+    pub(crate) size: [u32; 2],
     /// Camera space → clip space: four rows, a column vector on its right; z of NDC from −1 to 1.
-    pub clip_from_view: [[f32; 4]; 4],
+    pub(crate) clip_from_view: [[f32; 4]; 4],
     /// Whether there is light; else the color is the texel's.
-    pub is_lit: bool,
+    pub(crate) is_lit: bool,
     /// All vertices, each once.
-    pub vertices: Vec<Vertex>,
+    pub(crate) vertices: Vec<Vertex>,
     /// Three for each triangle.
-    pub indices: Vec<u32>,
+    pub(crate) indices: Vec<u32>,
 }
 
 impl Scene {
     /// One of the five scenes, or a sphere of any size: `sphere:TRIANGLES:WIDTHxHEIGHT`.
-    pub fn named(name: &str) -> Option<Self> {
+    pub(crate) fn named(name: &str) -> Option<Self> {
         const FULL_HD: [u32; 2] = [1920, 1080];
         let large = |stacks, slices, size| Self::new(size, true, sphere(stacks, slices, 3.05, 6.0));
         Some(match name {
@@ -81,12 +81,12 @@ impl Scene {
     }
 
     /// How many triangles there are.
-    pub fn triangle_count(&self) -> usize {
+    pub(crate) fn triangle_count(&self) -> usize {
         self.indices.len() / 3
     }
 
     /// What is to be seen, in a few words.
-    pub fn description(&self) -> String {
+    pub(crate) fn description(&self) -> String {
         let [width, height] = self.size;
         let light = if self.is_lit { "lit" } else { "unlit" };
         format!("{} triangles, {width}×{height}, {light}", self.triangle_count())
@@ -181,7 +181,7 @@ fn quads(size: [u32; 2]) -> (Vec<Vertex>, Vec<u32>) {
 
 /// The texture's texels, the lowest row first: a checkerboard with a gradient and a little noise. No channel is under 45,
 /// so that nothing drawn is as black as the background, even in the shadow.
-pub fn texels() -> Vec<[u8; 3]> {
+pub(crate) fn texels() -> Vec<[u8; 3]> {
     const FIELD: u32 = 32;
     let texel = |x: u32, y: u32| {
         let is_bright = (x / FIELD + y / FIELD).is_multiple_of(2);

@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
+use crate::machine;
 use crate::table::Table;
-use rasterbook_bench::machine;
 
 const FONT: &str = "font-family=\"sans-serif\" font-size=\"14\"";
 /// Colors that can be told apart, by people who see few colors too.

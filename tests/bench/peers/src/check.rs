@@ -3,10 +3,10 @@
 use std::error::Error;
 
 use crate::contestant::Contestant;
+use crate::ours::Coverage;
 use crate::peers::REFERENCE;
 use crate::picture::Difference;
 use crate::say;
-use rasterbook_bench::ours::Coverage;
 
 /// How much may differ: the part of the covered pixels that is covered in one picture alone, and the mean difference of
 /// the channels, of 255. Who samples half a pixel aside takes another texel now and then.

@@ -12,10 +12,10 @@ use std::io::{BufRead, BufReader, Read, Write, stdin, stdout};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::str::FromStr;
 
+use crate::ours::Frame;
 use crate::peers::{Peer, prepare};
+use crate::scenes::Scene;
 use rasterbook_bench::cores::keep_on_core;
-use rasterbook_bench::ours::Frame;
-use rasterbook_bench::scenes::Scene;
 use rasterbook_bench::timing::milliseconds;
 
 /// The first argument of a child; a renderer, the number of its threads and a scene follow.

@@ -4,9 +4,9 @@ use euc::buffer::Buffer2d;
 use euc::rasterizer::{BackfaceCullingEnabled, Triangles};
 use euc::{DepthStrategy, Pipeline, Target};
 
+use crate::ours::Frame;
 use crate::picture::{Texels, channels, lit, word};
-use rasterbook_bench::ours::Frame;
-use rasterbook_bench::scenes::{Scene, Vertex};
+use crate::scenes::{Scene, Vertex};
 
 /// How triangles are drawn: with a plane of depths, without their backs.
 type Method<'a> = Triangles<'a, Buffer2d<f32>, BackfaceCullingEnabled>;

@@ -4,10 +4,10 @@ use std::error::Error;
 use std::thread::available_parallelism;
 
 use crate::chart::{Curve, curves};
+use crate::ours::Threads;
 use crate::peers::{self, Peer};
+use crate::scenes::Scene;
 use crate::{Options, measured, say, start};
-use rasterbook_bench::ours::Threads;
-use rasterbook_bench::scenes::Scene;
 
 /// The numbers of triangles.
 const TRIANGLES: [u32; 5] = [1_000, 10_000, 100_000, 1_000_000, 10_000_000];

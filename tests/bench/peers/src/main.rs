@@ -15,10 +15,17 @@ mod check;
 mod contestant;
 mod euc;
 mod growth;
+#[path = "../../machine.rs"]
+mod machine;
 mod osmesa;
+#[expect(dead_code, reason = "stages are measured by `cargo bench`")]
+#[path = "../../ours.rs"]
+mod ours;
 mod peers;
 mod picture;
 mod retrofire;
+#[path = "../../scenes.rs"]
+mod scenes;
 mod table;
 
 use std::error::Error;
@@ -27,11 +34,10 @@ use std::io::{Write, stdout};
 use std::path::PathBuf;
 
 use contestant::{CHILD, Contestant};
+use ours::Threads;
 use peers::{Peer, REFERENCE};
-use rasterbook_bench::machine;
-use rasterbook_bench::ours::Threads;
-use rasterbook_bench::scenes::{NAMES, Scene};
 use rasterbook_bench::timing::{median, runs_for};
+use scenes::{NAMES, Scene};
 use table::{Row, Table};
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -11,8 +11,8 @@ use std::ptr::{null, null_mut};
 
 use libloading::Library;
 
-use rasterbook_bench::ours::Frame;
-use rasterbook_bench::scenes::{AMBIENT, Scene, TEXTURE_SIDE, TO_LIGHT, Vertex, texels};
+use crate::ours::Frame;
+use crate::scenes::{AMBIENT, Scene, TEXTURE_SIDE, TO_LIGHT, Vertex, texels};
 
 /// The names under which the library may be found.
 const LIBRARIES: [&str; 3] = ["libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"];

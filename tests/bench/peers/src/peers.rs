@@ -1,8 +1,8 @@
 //! The table of everything that is measured.
 
+use crate::ours::{Coverage, Frame, RASTERIZERS, Threads};
+use crate::scenes::Scene;
 use crate::{euc, osmesa, retrofire};
-use rasterbook_bench::ours::{Coverage, Frame, RASTERIZERS, Threads};
-use rasterbook_bench::scenes::Scene;
 
 /// The name of the peer that all are compared with.
 pub(crate) const REFERENCE: &str = "llvmpipe";

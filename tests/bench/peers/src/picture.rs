@@ -1,6 +1,6 @@
 //! What the other renderers' shaders share, and how pictures are compared.
 
-use rasterbook_bench::scenes::{AMBIENT, TEXTURE_SIDE, TO_LIGHT, texels};
+use crate::scenes::{AMBIENT, TEXTURE_SIDE, TO_LIGHT, texels};
 
 /// The texture, as words `0x00RRGGBB`.
 pub(crate) struct Texels(Vec<u32>);

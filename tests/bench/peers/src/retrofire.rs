@@ -9,9 +9,9 @@ use retrofire_core::render::{Colorbuf, Context, Framebuf, Model, TexCoord, rende
 use retrofire_core::util::pixfmt::Xrgb8888;
 use retrofire_core::util::{Buf2, Dims};
 
+use crate::ours::Frame;
 use crate::picture::{channels, lit};
-use rasterbook_bench::ours::Frame;
-use rasterbook_bench::scenes::{Scene, TEXTURE_SIDE, Vertex, texels};
+use crate::scenes::{Scene, TEXTURE_SIDE, Vertex, texels};
 
 /// Words `0x00RRGGBB`, and depths.
 type Canvas = Framebuf<Colorbuf<Buf2<u32>, Xrgb8888>, Buf2<f32>>;
