@@ -1,7 +1,8 @@
 //! A chapter's table: its variants, each one picture.
 
 use super::canvas::{Canvas, RasterizerChoice};
-use super::knobs::{Knob, Knobs};
+use super::knob::Knob;
+use super::knobs::Knobs;
 use super::subject::Subject;
 use crate::files::FileError;
 use crate::framebuffer::Framebuffer;
