@@ -120,6 +120,8 @@
 //!   same on every machine.
 //! - A mistake that a chapter discusses is a value of an option, never a copy of the code. The default is the right one.
 
+// docs.rs says of each item which feature it needs.
+#![cfg_attr(docsrs, feature(doc_cfg))]
 // The order of the modules is the order of the book; rustfmt would sort them by name. A test holds each of them to it:
 // a room imports only rooms that stand above it.
 #![cfg_attr(rustfmt, rustfmt_skip)]

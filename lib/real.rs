@@ -161,12 +161,19 @@ macro_rules! plain_number {
 
             #[inline]
             fn min(self, other: Self) -> Self {
-                // As the method of the same name, but for NaN and zeros: one instruction instead of four.
+                // As the method of the same name, but for NaN and zeros: one instruction instead of four. For aarch64, LLVM 22
+                // takes one that puts −0 before 0 if one of the two is a constant: there, equal numbers are looked for first.
+                if cfg!(target_arch = "aarch64") && self == other {
+                    return other;
+                }
                 if self < other { self } else { other }
             }
 
             #[inline]
             fn max(self, other: Self) -> Self {
+                if cfg!(target_arch = "aarch64") && self == other {
+                    return other;
+                }
                 if self > other { self } else { other }
             }
 

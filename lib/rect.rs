@@ -51,18 +51,15 @@ impl Rect {
     }
 
     /// Where the pixel (x, y) stands in a plane that holds the rectangle's rows one after the other, the lowest first;
-    /// `None` outside.
+    /// `None` outside, and beyond what `usize` holds: with 32 bits no plane has so many pixels.
     #[must_use]
     #[inline]
     pub const fn index(self, x: i32, y: i32) -> Option<usize> {
         // As `u32`, a negative difference is greater than any width: one comparison for each axis.
         let (column, row) = (x.wrapping_sub(self.left) as u32, y.wrapping_sub(self.bottom) as u32);
         let (width, height) = (length(self.left, self.right), length(self.bottom, self.top));
-        if column < width && row < height {
-            Some(row as usize * width as usize + column as usize)
-        } else {
-            None
-        }
+        let index = row as u64 * width as u64 + column as u64;
+        if column < width && row < height && index <= usize::MAX as u64 { Some(index as usize) } else { None }
     }
 
     /// The pixels that belong to both rectangles; where there are none, a rectangle without pixels.
@@ -120,7 +117,8 @@ mod tests {
             let [left, bottom, right, x, y] = [left, bottom, right, x, y].map(i128::from);
             let index = (y - bottom) * (right - left) + (x - left);
             let expected = rect.contains(x as i32, y as i32).then_some(index);
-            prop_assert_eq!(rect.index(x as i32, y as i32).map(|index| index as i128), expected);
+            let expected = expected.and_then(|index| usize::try_from(index).ok());
+            prop_assert_eq!(rect.index(x as i32, y as i32), expected);
         }
 
         #[test]
