@@ -289,6 +289,11 @@ fn faults_are_told_with_their_line() {
         ("v after the last", "f 1 2 5\n", "line 5: vertex 5 is out of bounds"),
         ("vt after the last", "vt 0 0\nf 1/2 2/1 3/1\n", "line 6: texture coordinate 2 is out of bounds"),
         ("vt without any", "f 1/1 2/1 3/1\n", "line 5: texture coordinate 1 is out of bounds"),
+        (
+            "vt without any, and a short face",
+            "f 1/1 2/1 3/1\nf 1\n",
+            "line 5: texture coordinate 1 is out of bounds",
+        ),
         ("zero", "f 0 1 2\n", "line 5: vertex 0 is out of bounds"),
         ("zero vn", "vn 0 0 1\nf 1//0 2//1 3//1\n", "line 6: normal 0 is out of bounds"),
         ("far after", "f 1 2 9223372036854775807\n", "line 5: '9223372036854775807' is no index"),

@@ -330,6 +330,8 @@ impl<'a> PlainText<'a> {
             count += 1;
         }
         if count < 3 {
+            // What it names need not come; what faces before it named must.
+            self.ahead = earlier;
             self.found.short_faces.add(self.line);
             return Ok(());
         }
@@ -581,6 +583,9 @@ mod tests {
             let fault = with(statement);
             assert!(fault.starts_with("line 7: ") && fault.contains(cause), "{statement}: {fault}");
         }
+        let followed_by_a_short_one = fault(&format!("{CORNERS}f 1/1 2/1 3/1\nf 1\n"));
+        assert!(followed_by_a_short_one.starts_with("line 4: texture coordinate 1 is out of bounds"));
+        assert!(plain(&format!("{CORNERS}f 1 2 3\nf 9 9\n")).is_ok(), "a short face is left out");
         assert!(fault("f 1 2 4\nv 0 0 0\nv 0 0 0\nv 0 0 0\n").starts_with("line 1: vertex 4"));
         assert!(plain("f 1 2 3\nv 0 0 0\nv 0 0 0\nv 0 0 0\n").is_ok(), "vertices may follow their face");
     }
