@@ -21,6 +21,7 @@ use crate::merge::{Blend, Merge, Rounding};
 use crate::real::{Mask, Real};
 use crate::rect::Rect;
 use crate::shader::{Paint, Shaded, Shader};
+use crate::state::RenderState;
 use crate::varyings::{Derivatives, LinearVaryings};
 
 /// The tile of a band that is being drawn.
@@ -279,7 +280,19 @@ fn draw_rows<const PLAIN: bool, I: InstructionSet, S: Shader<N>, const N: usize>
 ) {
     instructions.run(
         #[inline(always)]
-        || draw_rows_in::<PLAIN, I, S, N>(instructions, frame, triangle, setup, spans, area, band),
+        || {
+            draw_rows_in::<PLAIN, I, S, N>(
+                instructions,
+                frame,
+                frame.shader,
+                frame.state,
+                triangle,
+                setup,
+                spans,
+                area,
+                band,
+            )
+        },
     );
 }
 
@@ -287,6 +300,8 @@ fn draw_rows<const PLAIN: bool, I: InstructionSet, S: Shader<N>, const N: usize>
 fn draw_rows_in<const PLAIN: bool, I: InstructionSet, S: Shader<N>, const N: usize>(
     instructions: I,
     frame: &Frame<'_, S, N>,
+    shader: &S,
+    state: &RenderState,
     triangle: Triangle<'_>,
     setup: &TriangleSetup,
     spans: &Spans,
@@ -295,7 +310,10 @@ fn draw_rows_in<const PLAIN: bool, I: InstructionSet, S: Shader<N>, const N: usi
 ) {
     let (bottom_left, stride, to_next_band) =
         (band.index((area.left, area.bottom)), band.stride, band.to_next_band);
-    let (colors, depths) = (&mut *band.colors, &mut *band.depths);
+    // As many of both, so that one test is enough for eight of each.
+    let pixels = band.colors.len().min(band.depths.len());
+    let (colors, depths) = (&mut band.colors[..pixels], &mut band.depths[..pixels]);
+    let last = pixels.checked_sub(LANES).expect("a band has room for eight");
     let varyings = PackedTriangleVaryings::<_, N>::of(instructions, triangle);
     let step = varyings.change(instructions, setup.weight_step()).spread(instructions);
     let gradients = S::USES_DERIVATIVES.then(
@@ -308,7 +326,6 @@ fn draw_rows_in<const PLAIN: bool, I: InstructionSet, S: Shader<N>, const N: usi
             ]
         },
     );
-    let last = colors.len() - LANES;
     let mut thrown_away = 0;
     for row in 0..area.rows().len() {
         let (first, covered, weights) = spans.row(row, &area.columns());
@@ -317,19 +334,26 @@ fn draw_rows_in<const PLAIN: bool, I: InstructionSet, S: Shader<N>, const N: usi
         let mut index = bottom_left + row * stride + (covered.start - area.left) as usize;
         let mut count = covered.end - covered.start;
         while count > 0 {
-            let mut bits = ALL >> (LANES as i32 - count).max(0);
-            if index > last {
+            let mut bits = instructions.lowest(count);
+            let at = index.min(last);
+            if at < index {
                 // Fewer than eight are left of the band: the group begins as many before.
-                let before = (index - last) as i32;
+                let before = (index - at) as i32;
                 bits <<= before;
                 right = right - instructions.splat(before as f32);
-                index = last;
             }
-            let (colors, depths) = (eight(colors, index), eight(depths, index));
+            let (colors, depths) = (eight(colors, at), eight(depths, at));
             fetch_ahead(to_next_band, colors, depths);
             let linear = start.moved(&step, right);
-            thrown_away |=
-                draw_group::<PLAIN, I, S, N>(instructions, frame, linear, &gradients, bits, colors, depths);
+            thrown_away |= draw_group::<PLAIN, I, S, N>(
+                instructions,
+                (shader, state),
+                linear,
+                &gradients,
+                bits,
+                colors,
+                depths,
+            );
             index += LANES;
             count -= LANES as i32;
             right = right + instructions.splat(LANES as f32);
@@ -357,14 +381,13 @@ fn fetch_ahead(to_next_band: usize, colors: &[Color; LANES], depths: &[f32; LANE
 #[inline(always)]
 fn draw_group<const PLAIN: bool, I: InstructionSet, S: Shader<N>, const N: usize>(
     instructions: I,
-    frame: &Frame<'_, S, N>,
+    (shader, state): (&S, &RenderState),
     linear: LinearVaryings<I::Lanes, N>,
     gradients: &Option<[LinearVaryings<I::Lanes, N>; 2]>,
     covered: i32,
     colors: &mut [Color; LANES],
     depths: &mut [f32; LANES],
 ) -> i32 {
-    let (shader, state) = (frame.shader, frame.state);
     let interpolation = if PLAIN { Interpolation::PerspectiveCorrect } else { state.interpolation };
 
     // Depth first: what is hidden need not be shaded.
