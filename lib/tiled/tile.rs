@@ -140,8 +140,7 @@ impl<'a, I: InstructionSet> Tile<'a, I> {
             let start = varyings.at(instructions, [weights[0][row], weights[1][row]]).first;
             // The remainder only shows the compiler that the index is in range.
             let steps = instructions.splat(STEPS[(column - firsts[row] as usize) % SMALL_SIDE]);
-            let packed = Block(instructions.numbers(start + step * steps));
-            self.enqueue(frame, packed, corner + row * width + column);
+            self.enqueue(frame, start + step * steps, corner + row * width + column);
         }
     }
 
@@ -150,16 +149,18 @@ impl<'a, I: InstructionSet> Tile<'a, I> {
     fn enqueue<S: Shader<N>, const N: usize>(
         &mut self,
         frame: &Frame<'_, S, N>,
-        packed: Block,
+        packed: I::Lanes,
         index: usize,
     ) {
         // Stored depths never grow: what fails now fails later.
-        if frame.is_plain && packed.0[1] > self.band.depths[index] {
+        if frame.is_plain && self.instructions.numbers(packed)[1] > self.band.depths[index] {
             return;
         }
-        self.queue.packed[self.queue.count] = packed;
-        self.queue.indices[self.queue.count] = index;
-        self.queue.count += 1;
+        // The remainder only shows the compiler that there is room. All eight at once are written as they are read.
+        let place = self.queue.count % LANES;
+        self.queue.packed[place] = Block(self.instructions.numbers(packed));
+        self.queue.indices[place] = index;
+        self.queue.count = place + 1;
         if self.queue.count == LANES {
             self.flush(frame);
         }
@@ -205,9 +206,14 @@ impl<'a, I: InstructionSet> Tile<'a, I> {
         let kept = instructions.bits(shaded.keep);
         let opaque = instructions.word_array(opaque(instructions, shaded.color));
         let channels = shaded.color.channels();
-        for lane in (0..count).filter(|lane| kept >> lane & 1 == 1) {
-            let index = self.queue.indices[lane];
-            let (color, depth) = (&mut self.band.colors[index], &mut self.band.depths[index]);
+        // As many of both, so that one test is enough.
+        let pixels = self.band.colors.len().min(self.band.depths.len());
+        let (colors, band_depths) = (&mut self.band.colors[..pixels], &mut self.band.depths[..pixels]);
+        for (lane, &index) in self.queue.indices.iter().enumerate().take(count) {
+            if kept >> lane & 1 == 0 {
+                continue;
+            }
+            let (color, depth) = (&mut colors[index], &mut band_depths[index]);
             if !depth_test.passes(depths[lane], *depth) {
                 continue;
             }
@@ -329,6 +335,9 @@ fn draw_rows_in<const PLAIN: bool, I: InstructionSet, S: Shader<N>, const N: usi
     let mut thrown_away = 0;
     for row in 0..area.rows().len() {
         let (first, covered, weights) = spans.row(row, &area.columns());
+        if covered.is_empty() {
+            continue;
+        }
         let start = varyings.at(instructions, weights).spread(instructions);
         let mut right = instructions.splat((covered.start - first) as f32) + instructions.lanes(STEPS);
         let mut index = bottom_left + row * stride + (covered.start - area.left) as usize;
