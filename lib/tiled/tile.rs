@@ -286,19 +286,7 @@ fn draw_rows<const PLAIN: bool, I: InstructionSet, S: Shader<N>, const N: usize>
 ) {
     instructions.run(
         #[inline(always)]
-        || {
-            draw_rows_in::<PLAIN, I, S, N>(
-                instructions,
-                frame,
-                frame.shader,
-                frame.state,
-                triangle,
-                setup,
-                spans,
-                area,
-                band,
-            )
-        },
+        || draw_rows_in::<PLAIN, I, S, N>(instructions, frame, triangle, setup, spans, area, band),
     );
 }
 
@@ -306,8 +294,6 @@ fn draw_rows<const PLAIN: bool, I: InstructionSet, S: Shader<N>, const N: usize>
 fn draw_rows_in<const PLAIN: bool, I: InstructionSet, S: Shader<N>, const N: usize>(
     instructions: I,
     frame: &Frame<'_, S, N>,
-    shader: &S,
-    state: &RenderState,
     triangle: Triangle<'_>,
     setup: &TriangleSetup,
     spans: &Spans,
@@ -316,6 +302,8 @@ fn draw_rows_in<const PLAIN: bool, I: InstructionSet, S: Shader<N>, const N: usi
 ) {
     let (bottom_left, stride, to_next_band) =
         (band.index((area.left, area.bottom)), band.stride, band.to_next_band);
+    // Read once: the compiler cannot know that they stay the same.
+    let program = (frame.shader, frame.state);
     // As many of both, so that one test is enough for eight of each.
     let pixels = band.colors.len().min(band.depths.len());
     let (colors, depths) = (&mut band.colors[..pixels], &mut band.depths[..pixels]);
@@ -354,15 +342,8 @@ fn draw_rows_in<const PLAIN: bool, I: InstructionSet, S: Shader<N>, const N: usi
             let (colors, depths) = (eight(colors, at), eight(depths, at));
             fetch_ahead(to_next_band, colors, depths);
             let linear = start.moved(&step, right);
-            thrown_away |= draw_group::<PLAIN, I, S, N>(
-                instructions,
-                (shader, state),
-                linear,
-                &gradients,
-                bits,
-                colors,
-                depths,
-            );
+            thrown_away |=
+                draw_group::<PLAIN, I, S, N>(instructions, program, linear, &gradients, bits, colors, depths);
             index += LANES;
             count -= LANES as i32;
             right = right + instructions.splat(LANES as f32);
