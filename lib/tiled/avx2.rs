@@ -5,10 +5,12 @@
 //! knows once everything is inlined: nothing of it is left in the program.
 
 use std::arch::x86_64::{
-    _mm_cvtsi64_si128, _mm256_and_pd, _mm256_and_si256, _mm256_castps_si256, _mm256_cvtepi32_ps,
-    _mm256_cvtepu8_epi32, _mm256_movemask_ps, _mm256_or_pd, _mm256_or_ps, _mm256_permute2f128_ps,
-    _mm256_set1_epi32, _mm256_set1_pd, _mm256_setzero_si256, _mm256_shuffle_ps, _mm256_srli_epi32,
-    _mm256_sub_epi32, _mm256_unpackhi_ps, _mm256_unpacklo_ps, _mm256_xor_pd,
+    _bzhi_u32, _mm_cvtsi64_si128, _mm_setr_epi8, _mm256_and_pd, _mm256_and_si256,
+    _mm256_broadcastsi128_si256, _mm256_castps_si256, _mm256_cvtepi32_ps, _mm256_cvtepu8_epi32,
+    _mm256_movemask_ps, _mm256_or_pd, _mm256_or_ps, _mm256_packs_epi32, _mm256_packus_epi16,
+    _mm256_permute2f128_ps, _mm256_set1_epi32, _mm256_set1_pd, _mm256_setzero_si256, _mm256_shuffle_epi8,
+    _mm256_shuffle_ps, _mm256_srli_epi32, _mm256_sub_epi32, _mm256_unpackhi_ps, _mm256_unpacklo_ps,
+    _mm256_xor_pd,
 };
 use std::array::from_fn;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -411,10 +413,14 @@ impl InstructionSet for Avx2 {
     }
 
     #[inline(always)]
+    fn lowest(self, count: i32) -> i32 {
+        lowest(self, count)
+    }
+
+    #[inline(always)]
     fn packed(self, [red, green, blue]: [Numbers; 3]) -> Words {
         let [red, green, blue] = [channel(self, red), channel(self, green), channel(self, blue)];
-        let upper = self.or_i32x8(self.shl_i32x8(red, 16), self.shl_i32x8(green, 8));
-        Eight(self.or_i32x8(upper, blue))
+        Eight(narrowed(self, red, green, blue))
     }
 
     #[inline(always)]
@@ -460,12 +466,35 @@ fn low_byte(words: i32x8<Avx2>) -> Numbers {
     Eight(avx2.cvt_f32_i32x8(avx2.and_i32x8(words, avx2.splat_i32x8(0xFF))))
 }
 
-/// A channel, rounded to the nearest of 0..=255.
+/// A channel, rounded to the nearest whole number up to 255; far below zero or not a number, the least there is.
 #[inline(always)]
 fn channel(avx2: Avx2, channel: Numbers) -> i32x8<Avx2> {
-    let limited = (channel + One(0.5)).max(One(0.0)).min(One(255.0));
+    // In this order: what is not a number stays so.
+    let limited = One(255.0).min(channel + One(0.5));
     avx2.cvt_i32_f32x8(limited.eight(avx2))
 }
+
+kernel!(
+    /// Words of three channels each, of which what is negative counts as 0.
+    ///
+    /// Narrowed twice with that limit, within each half of the registers: first the four blues, greens and reds of it, then
+    /// in the order of pixels.
+    #[inline(always)]
+    fn narrowed(avx2: Avx2, red: i32x8<Avx2>, green: i32x8<Avx2>, blue: i32x8<Avx2>) -> i32x8<Avx2> {
+        let (red, green, blue) = (red.into(), green.into(), blue.into());
+        let bytes = _mm256_packus_epi16(_mm256_packs_epi32(blue, green), _mm256_packs_epi32(red, red));
+        let zero = -1;
+        let pixels = _mm_setr_epi8(0, 4, 8, zero, 1, 5, 9, zero, 2, 6, 10, zero, 3, 7, 11, zero);
+        _mm256_shuffle_epi8(bytes, _mm256_broadcastsi128_si256(pixels)).simd_into(avx2)
+    }
+);
+
+kernel!(
+    #[inline(always)]
+    fn lowest(_avx2: Avx2, count: i32) -> i32 {
+        _bzhi_u32(ALL as u32, count as u32) as i32
+    }
+);
 
 kernel!(
     #[inline(always)]

@@ -4,7 +4,7 @@ use bytemuck::cast;
 use wide::{CmpEq, CmpLe, CmpLt, f32x8, f64x4, i16x8, i32x8};
 
 use super::instruction_set::{Four, InstructionSet};
-use super::lanes::{Block, LANES, LaneMask, Lanes, is_less_or_equal, packed};
+use super::lanes::{ALL, Block, LANES, LaneMask, Lanes, is_less_or_equal, packed};
 
 /// What the whole program is compiled for.
 #[derive(Clone, Copy, Debug)]
@@ -58,6 +58,11 @@ impl InstructionSet for Baseline {
     #[inline(always)]
     fn bits(self, mask: LaneMask) -> i32 {
         mask.bits()
+    }
+
+    #[inline(always)]
+    fn lowest(self, count: i32) -> i32 {
+        ALL >> (LANES as i32 - count).max(0)
     }
 
     #[inline(always)]

@@ -43,6 +43,8 @@ pub(super) trait InstructionSet: Copy + Debug + Send + Sync {
     fn is_less_or_equal(self, a: Self::Lanes, b: Self::Lanes) -> MaskOf<Self>;
     /// The lanes whose bit is set, the first lane in the lowest bit.
     fn mask(self, bits: i32) -> MaskOf<Self>;
+    /// The bits of the first lanes, or of all if there are fewer; for 1..=255.
+    fn lowest(self, count: i32) -> i32;
     /// A bit for each lane.
     fn bits(self, mask: MaskOf<Self>) -> i32;
 

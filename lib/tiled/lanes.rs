@@ -302,6 +302,10 @@ mod tests {
         let all = |answer| -> MaskOf<I> { Mask::all(answer) };
         assert_eq!(instructions.bits(all(true)), ALL);
         assert_eq!(instructions.bits(all(true).not()), 0);
+        assert_eq!(
+            [1, 3, 8, 9, 32, 128, 255].map(|count| instructions.lowest(count)),
+            [1, 7, ALL, ALL, ALL, ALL, ALL]
+        );
         let some = mask(0b1111);
         let both = |other| instructions.bits(some.and(other));
         assert_eq!([mask(0b1111_1000), all(true), all(false)].map(both), [0b1000, 0b1111, 0]);
@@ -321,9 +325,19 @@ mod tests {
 
     fn check_colors<I: InstructionSet>(instructions: I) {
         let values = [-1.0, 0.0, 0.5, 127.49, 254.5, 255.0, 300.0, f32::NAN];
-        let color = [instructions.lanes(values), I::Lanes::of(10.0), I::Lanes::of(20.0)];
-        for (word, value) in instructions.word_array(instructions.packed(color)).into_iter().zip(values) {
-            assert_eq!(Color::from_bits(word), Rounding::Nearest.color([value, 10.0, 20.0]));
+        let far = [f32::INFINITY, f32::NEG_INFINITY, 3e9, -3e9, 40_000.0, -40_000.0, 70_000.0, 128.5];
+        for values in [values, far] {
+            // Each of them as each channel.
+            for turn in 0..3 {
+                let mut color = [instructions.lanes(values), I::Lanes::of(10.0), I::Lanes::of(20.0)];
+                color.rotate_right(turn);
+                let words = instructions.word_array(instructions.packed(color));
+                for (word, value) in words.into_iter().zip(values) {
+                    let mut color = [value, 10.0, 20.0];
+                    color.rotate_right(turn);
+                    assert_eq!(Color::from_bits(word), Rounding::Nearest.color(color));
+                }
+            }
         }
         let [red, green, blue] = I::Lanes::channels(instructions.words([0x0010_2030; 8]));
         assert_eq!([red, green, blue].map(|lanes| instructions.numbers(lanes)[3]), [16.0, 32.0, 48.0]);

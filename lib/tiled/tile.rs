@@ -21,6 +21,7 @@ use crate::merge::{Blend, Merge, Rounding};
 use crate::real::{Mask, Real};
 use crate::rect::Rect;
 use crate::shader::{Paint, Shaded, Shader};
+use crate::state::RenderState;
 use crate::varyings::{Derivatives, LinearVaryings};
 
 /// The tile of a band that is being drawn.
@@ -139,8 +140,7 @@ impl<'a, I: InstructionSet> Tile<'a, I> {
             let start = varyings.at(instructions, [weights[0][row], weights[1][row]]).first;
             // The remainder only shows the compiler that the index is in range.
             let steps = instructions.splat(STEPS[(column - firsts[row] as usize) % SMALL_SIDE]);
-            let packed = Block(instructions.numbers(start + step * steps));
-            self.enqueue(frame, packed, corner + row * width + column);
+            self.enqueue(frame, start + step * steps, corner + row * width + column);
         }
     }
 
@@ -149,16 +149,18 @@ impl<'a, I: InstructionSet> Tile<'a, I> {
     fn enqueue<S: Shader<N>, const N: usize>(
         &mut self,
         frame: &Frame<'_, S, N>,
-        packed: Block,
+        packed: I::Lanes,
         index: usize,
     ) {
         // Stored depths never grow: what fails now fails later.
-        if frame.is_plain && packed.0[1] > self.band.depths[index] {
+        if frame.is_plain && self.instructions.numbers(packed)[1] > self.band.depths[index] {
             return;
         }
-        self.queue.packed[self.queue.count] = packed;
-        self.queue.indices[self.queue.count] = index;
-        self.queue.count += 1;
+        // The remainder only shows the compiler that there is room. All eight at once are written as they are read.
+        let place = self.queue.count % LANES;
+        self.queue.packed[place] = Block(self.instructions.numbers(packed));
+        self.queue.indices[place] = index;
+        self.queue.count = place + 1;
         if self.queue.count == LANES {
             self.flush(frame);
         }
@@ -204,9 +206,14 @@ impl<'a, I: InstructionSet> Tile<'a, I> {
         let kept = instructions.bits(shaded.keep);
         let opaque = instructions.word_array(opaque(instructions, shaded.color));
         let channels = shaded.color.channels();
-        for lane in (0..count).filter(|lane| kept >> lane & 1 == 1) {
-            let index = self.queue.indices[lane];
-            let (color, depth) = (&mut self.band.colors[index], &mut self.band.depths[index]);
+        // As many of both, so that one test is enough.
+        let pixels = self.band.colors.len().min(self.band.depths.len());
+        let (colors, band_depths) = (&mut self.band.colors[..pixels], &mut self.band.depths[..pixels]);
+        for (lane, &index) in self.queue.indices.iter().enumerate().take(count) {
+            if kept >> lane & 1 == 0 {
+                continue;
+            }
+            let (color, depth) = (&mut colors[index], &mut band_depths[index]);
             if !depth_test.passes(depths[lane], *depth) {
                 continue;
             }
@@ -295,7 +302,12 @@ fn draw_rows_in<const PLAIN: bool, I: InstructionSet, S: Shader<N>, const N: usi
 ) {
     let (bottom_left, stride, to_next_band) =
         (band.index((area.left, area.bottom)), band.stride, band.to_next_band);
-    let (colors, depths) = (&mut *band.colors, &mut *band.depths);
+    // Read once: the compiler cannot know that they stay the same.
+    let program = (frame.shader, frame.state);
+    // As many of both, so that one test is enough for eight of each.
+    let pixels = band.colors.len().min(band.depths.len());
+    let (colors, depths) = (&mut band.colors[..pixels], &mut band.depths[..pixels]);
+    let last = pixels.checked_sub(LANES).expect("a band has room for eight");
     let varyings = PackedTriangleVaryings::<_, N>::of(instructions, triangle);
     let step = varyings.change(instructions, setup.weight_step()).spread(instructions);
     let gradients = S::USES_DERIVATIVES.then(
@@ -308,28 +320,30 @@ fn draw_rows_in<const PLAIN: bool, I: InstructionSet, S: Shader<N>, const N: usi
             ]
         },
     );
-    let last = colors.len() - LANES;
     let mut thrown_away = 0;
     for row in 0..area.rows().len() {
         let (first, covered, weights) = spans.row(row, &area.columns());
+        if covered.is_empty() {
+            continue;
+        }
         let start = varyings.at(instructions, weights).spread(instructions);
         let mut right = instructions.splat((covered.start - first) as f32) + instructions.lanes(STEPS);
         let mut index = bottom_left + row * stride + (covered.start - area.left) as usize;
         let mut count = covered.end - covered.start;
         while count > 0 {
-            let mut bits = ALL >> (LANES as i32 - count).max(0);
-            if index > last {
+            let mut bits = instructions.lowest(count);
+            let at = index.min(last);
+            if at < index {
                 // Fewer than eight are left of the band: the group begins as many before.
-                let before = (index - last) as i32;
+                let before = (index - at) as i32;
                 bits <<= before;
                 right = right - instructions.splat(before as f32);
-                index = last;
             }
-            let (colors, depths) = (eight(colors, index), eight(depths, index));
+            let (colors, depths) = (eight(colors, at), eight(depths, at));
             fetch_ahead(to_next_band, colors, depths);
             let linear = start.moved(&step, right);
             thrown_away |=
-                draw_group::<PLAIN, I, S, N>(instructions, frame, linear, &gradients, bits, colors, depths);
+                draw_group::<PLAIN, I, S, N>(instructions, program, linear, &gradients, bits, colors, depths);
             index += LANES;
             count -= LANES as i32;
             right = right + instructions.splat(LANES as f32);
@@ -357,14 +371,13 @@ fn fetch_ahead(to_next_band: usize, colors: &[Color; LANES], depths: &[f32; LANE
 #[inline(always)]
 fn draw_group<const PLAIN: bool, I: InstructionSet, S: Shader<N>, const N: usize>(
     instructions: I,
-    frame: &Frame<'_, S, N>,
+    (shader, state): (&S, &RenderState),
     linear: LinearVaryings<I::Lanes, N>,
     gradients: &Option<[LinearVaryings<I::Lanes, N>; 2]>,
     covered: i32,
     colors: &mut [Color; LANES],
     depths: &mut [f32; LANES],
 ) -> i32 {
-    let (shader, state) = (frame.shader, frame.state);
     let interpolation = if PLAIN { Interpolation::PerspectiveCorrect } else { state.interpolation };
 
     // Depth first: what is hidden need not be shaded.
