@@ -294,6 +294,18 @@ mod tests {
     }
 
     #[test]
+    fn large_exponents_are_not_multiplied() {
+        // Ten squarings are x¹⁰²⁴, and not rounded as a power is.
+        let squared = (0..10).fold(0.9, |x: f64, _| x * x);
+        assert_ne!(squared, libm::pow(0.9, 1024.0));
+        assert_eq!(power(0.9, 1024.0), squared);
+        // Beyond, each squaring would double the error: of (1 − 10⁻⁶) to the 10⁶ it would reach the tenth digit.
+        for exponent in [1025.0, 1e6 + 1.0, 4e9] {
+            assert_eq!(power(0.999_999, exponent), libm::pow(0.999_999, exponent), "{exponent}");
+        }
+    }
+
+    #[test]
     fn light_from_straight_above_and_from_the_side() {
         let up = [0.0, 1.0, 0.0];
         let material =
