@@ -321,6 +321,27 @@ mod tests {
     }
 
     #[test]
+    fn a_highlight_is_added_in_the_color_of_the_light() {
+        // The light at half intensity straight above, the eye 60° beside it: the ray is mirrored to the light itself, and
+        // the half vector is 30° from the normal. Squared, the cosines are 1/4 and 3/4.
+        let (up, eye) = ([0.0, 1.0, 0.0], [0.75_f64.sqrt(), 0.5, 0.0]);
+        let shade = |highlight, to_eye| {
+            let material = Material { ambient: 0.1, diffuse: 0.2, specular: 0.5, exponent: 2.0, highlight };
+            material.shade([100.0, 50.0, 0.0], up, (up, 0.5), to_eye)
+        };
+        // A fifth of the surface's color, and of half the light's 255 · 0.5 as much as the square says.
+        for (highlight, to_eye, gloss) in [
+            (Highlight::None, up, 0.0),
+            (Highlight::Phong, up, 63.75),
+            (Highlight::Phong, eye, 15.9375),
+            (Highlight::BlinnPhong, eye, 47.8125),
+        ] {
+            let (found, expected) = (shade(highlight, to_eye), [20.0 + gloss, 10.0 + gloss, gloss]);
+            assert!((0..3).all(|i| (found[i] - expected[i]).abs() < 1e-12), "{highlight:?}: {found:?}");
+        }
+    }
+
+    #[test]
     fn a_bluish_texel_all_but_leaves_the_normal() {
         let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         assert_eq!(mapped_normal([127.5, 127.5, 255.0], axes), [0.0, 0.0, 1.0]);
