@@ -623,7 +623,8 @@ mod tests {
             interpolation: Interpolation::Affine,
             walk,
         };
-        let plain = ScreenTriangle { w: Some(w), interpolation: Interpolation::Reciprocal, ..stepped.clone() };
+        let plain =
+            ScreenTriangle { w: Some(w), interpolation: Interpolation::Reciprocal, ..stepped.clone() };
         let deep = ScreenTriangle { depth: Some(depths), ..plain.clone() };
         let told = told.0.lock().expect("not poisoned");
         assert_eq!(*told, [Some(stepped), None, Some(plain), None, Some(deep), None]);
