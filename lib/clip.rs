@@ -528,7 +528,8 @@ mod tests {
     fn a_point_beside_the_eye_is_a_hair_in_front_of_it() {
         let [x, y, z, w] = [1e3, -0.3, 5.0, 0.0];
         let vertex = NdcVertex::from(ClipVertex { position: dvec4(x, y, z, w), varyings: [] });
-        assert!(vertex.w > 0.0 && vertex.position.is_finite());
+        let hair = (0..64).fold(1.0, |half: f64, _| half / 2.0);
+        assert!(vertex.w == hair && vertex.position.is_finite());
         assert_eq!(vertex.position * vertex.w, dvec4(x, y, z, w).truncate());
     }
 

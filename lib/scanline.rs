@@ -315,6 +315,14 @@ pub(crate) mod tests {
     }
 
     #[test]
+    fn vertices_of_equal_height_keep_their_order() {
+        let order = |triangle: [(f64, f64); 3]| split(triangle.map(DVec2::from)).expect("an area").order;
+        assert_eq!(order([(0.0, 0.0), (0.0, 4.0), (4.0, 4.0)]), [0, 1, 2]);
+        assert_eq!(order([(0.0, 0.0), (4.0, 0.0), (0.0, 4.0)]), [0, 1, 2]);
+        assert_eq!(order([(0.0, 4.0), (4.0, 0.0), (0.0, 1.0)]), [1, 2, 0]);
+    }
+
+    #[test]
     fn nearly_horizontal_edges_overshoot_unless_clamped() {
         // Rows 1 and 2, and only 2/1000 of a pixel between them: one step of y moves x by more than 1000.
         // The row of a fractional middle vertex belongs to both halves, hence the 2s.
