@@ -446,6 +446,45 @@ mod tests {
     }
 
     #[test]
+    fn distances_to_the_planes() {
+        let planes =
+            [Plane::LEFT, Plane::RIGHT, Plane::BOTTOM, Plane::TOP, Plane::NEAR, Plane::NEAR_ZERO, Plane::FAR];
+        // w + x, w − x, w + y, w − y, w + z, z, w − z.
+        let at = |position| planes.map(|plane| plane.signed_distance(position));
+        assert_eq!(at(dvec4(1.0, 2.0, 3.0, 10.0)), [11.0, 9.0, 12.0, 8.0, 13.0, 3.0, 7.0]);
+        assert_eq!(Plane::in_front(4.0).signed_distance(dvec4(1.0, 2.0, 3.0, 10.0)), 6.0);
+        let after = ClipTest::AfterDivide.signed_distance(&Plane::RIGHT, dvec4(3.0, 0.0, 0.0, -2.0));
+        assert_eq!(after, 2.5, "1 − 3 / −2");
+    }
+
+    #[test]
+    fn planes_of_the_volumes() {
+        let [book, other] = [DepthRange::NegativeOneToOne, DepthRange::ZeroToOne];
+        assert!(ClipVolume::Everything.planes(book).is_empty());
+        assert_eq!(ClipVolume::InFront(2.0).planes(other).as_slice(), [Plane::in_front(2.0)]);
+        assert_eq!(ClipVolume::Canonical.planes(book).as_slice(), Plane::CANONICAL);
+        assert_eq!(ClipVolume::Canonical.planes(other).as_slice(), Plane::ZERO_TO_ONE);
+    }
+
+    #[test]
+    fn after_the_divide_a_cut_can_bring_back_what_is_outside() {
+        // x/w is 3, 5.5 and 3: all beyond the right plane. The middle of the first edge, where the upper plane cuts it,
+        // is (0.25, −1, 0, 0.5).
+        let vertex = |x, y, w| ClipVertex { position: dvec4(x, y, 0.0, w), varyings: [] };
+        let triangle = [vertex(6.0, 0.0, 2.0), vertex(-5.5, -2.0, -1.0), vertex(6.0, 0.5, 2.0)];
+        let left = clip_triangle(triangle, &[Plane::TOP, Plane::RIGHT], ClipTest::AfterDivide);
+        assert!(left.contains(&vertex(0.25, -1.0, 0.5)), "{left:?}");
+    }
+
+    #[test]
+    fn a_quad_is_two_triangles_from_its_first_vertex() {
+        let quad: ArrayVec<char, 4> = ['a', 'b', 'c', 'd'].into();
+        assert_eq!(fan(quad).collect::<Vec<_>>(), [['a', 'b', 'c'], ['a', 'c', 'd']]);
+        let line: ArrayVec<char, 4> = ['a', 'b'].into_iter().collect();
+        assert_eq!(fan(line).count(), 0);
+    }
+
+    #[test]
     fn outside_nothing_is_left_and_odd_numbers_are_discarded() {
         let vertex = |x, w| ClipVertex { position: dvec4(x, 0.5, 0.0, w), varyings: [] };
         let clip = |triangle| clip_triangle(triangle, &Plane::CANONICAL, ClipTest::BeforeDivide);
@@ -489,7 +528,8 @@ mod tests {
     fn a_point_beside_the_eye_is_a_hair_in_front_of_it() {
         let [x, y, z, w] = [1e3, -0.3, 5.0, 0.0];
         let vertex = NdcVertex::from(ClipVertex { position: dvec4(x, y, z, w), varyings: [] });
-        assert!(vertex.w > 0.0 && vertex.position.is_finite());
+        let hair = (0..64).fold(1.0, |half: f64, _| half / 2.0);
+        assert!(vertex.w == hair && vertex.position.is_finite());
         assert_eq!(vertex.position * vertex.w, dvec4(x, y, z, w).truncate());
     }
 

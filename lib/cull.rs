@@ -68,4 +68,15 @@ mod tests {
         assert!(CullMode::Front.culls(3.0, Winding::CounterClockwise));
         assert!(CullMode::Back.culls(0.0, Winding::CounterClockwise));
     }
+
+    #[test]
+    fn by_winding_it_is_the_same() {
+        for (area, winding) in [(3.0, Winding::CounterClockwise), (-3.0, Winding::Clockwise)] {
+            for front in [Winding::CounterClockwise, Winding::Clockwise] {
+                for mode in [CullMode::None, CullMode::Back, CullMode::Front] {
+                    assert_eq!(mode.culls_winding(winding, front), mode.culls(area, front), "{mode:?}");
+                }
+            }
+        }
+    }
 }

@@ -260,6 +260,38 @@ mod tests {
     }
 
     #[test]
+    fn what_the_divide_leaves_of_each_encoding() {
+        let divided = |encoding: DepthEncoding, z: f64| encoding.clip_z(z, 2.0, 10.0) / z;
+        assert_eq!([2.0, 4.0, 10.0].map(|z| divided(DepthEncoding::ViewZ, z)), [2.0, 4.0, 10.0]);
+        assert_eq!([2.0, 4.0, 10.0].map(|z| divided(DepthEncoding::Reciprocal, z)), [-0.5, -0.25, -0.1]);
+        // −1 on the near plane, 1 on the far one, and linear in 1/z: 0 where that is (1/2 + 1/10) / 2.
+        for (z, expected) in [(2.0, -1.0), (10.0 / 3.0, 0.0), (10.0, 1.0)] {
+            assert!((divided(DepthEncoding::Ndc, z) - expected).abs() < 1e-12, "at {z}");
+        }
+    }
+
+    #[test]
+    fn depths_of_hardware_by_hand() {
+        // Q = 10 / (10 − 2) = 5/4, and at the distance 4: 5/4 · (4 − 2) / 4 = 5/8.
+        assert_eq!([2.0, 4.0, 10.0].map(|w| z_from_w(w, 2.0, 10.0)), [0.0, 0.625, 1.0]);
+        assert_eq!([0.0, 0.625, 1.0].map(|z| w_from_z(z, 2.0, 10.0)), [2.0, 4.0, 10.0]);
+        assert_eq!([2.0, 4.0, 10.0].map(|w| reversed_z_from_w(w, 2.0, 10.0)), [1.0, 0.375, 0.0]);
+    }
+
+    #[test]
+    fn buffers_are_equal_if_their_depths_are() {
+        let filled = |width, height, depth| {
+            let mut buffer = DepthBuffer::new(width, height);
+            buffer.clear(depth);
+            buffer
+        };
+        assert!(filled(2, 3, 1.0) == filled(2, 3, 1.0));
+        assert!(filled(2, 3, 1.0) != filled(2, 3, 0.5), "other depths");
+        assert!(filled(2, 3, 1.0) != filled(3, 2, 1.0), "as many in another shape");
+        assert_eq!(filled(2, 3, 1.0).rect(), Rect::sized(2, 3));
+    }
+
+    #[test]
     fn what_a_format_can_hold() {
         let unorm = DepthFormat::Unorm24;
         assert_eq!([0.0, 1.0].map(|depth| unorm.stored(depth)), [0.0, 1.0]);

@@ -241,6 +241,29 @@ mod tests {
     }
 
     #[test]
+    fn a_rectangle_is_filled_as_far_as_it_is_inside() {
+        let mut framebuffer = Framebuffer::new(3, 2);
+        assert_eq!((framebuffer.width(), framebuffer.height()), (3, 2));
+        assert_eq!(framebuffer.rect(), Rect { left: 0, bottom: 0, right: 3, top: 2 });
+        framebuffer.fill(Rect { left: 1, bottom: -7, right: 9, top: 1 }, Color::RED);
+        let [black, red] = [Color::BLACK, Color::RED];
+        let rows: Vec<&[Color]> = framebuffer.rows_from_top().collect();
+        assert_eq!(rows, [[black, black, black], [black, red, red]]);
+        assert_eq!(format!("{framebuffer:?}"), "Framebuffer of 3×2 pixels");
+    }
+
+    #[test]
+    fn framebuffers_are_equal_if_their_pictures_are() {
+        let red = |x| {
+            let mut framebuffer = Framebuffer::new(3, 2);
+            framebuffer.set(x, 0, Color::RED);
+            framebuffer
+        };
+        assert!(red(1) == red(1) && red(1) != red(2));
+        assert!(Framebuffer::new(3, 2) != Framebuffer::new(2, 3), "as many pixels in another shape");
+    }
+
+    #[test]
     fn another_picture_has_another_fingerprint() {
         let black = |width, height| Framebuffer::new(width, height).fingerprint();
         let mut dot = Framebuffer::new(2, 3);

@@ -394,6 +394,10 @@ impl Payload for EdgeParameter {
 mod tests {
     use super::*;
 
+    use std::any::Any;
+    use std::sync::{Arc, Mutex};
+
+    use crate::observer::Observer;
     use crate::transform::{perspective, perspective_divide};
     use glam::{DVec3, dvec2, dvec3};
     use proptest::prelude::*;
@@ -552,6 +556,7 @@ mod tests {
                     assert!(is_near(found.w, hit.z, 1e4));
                 }
             });
+            prop_assert_eq!(points.next(), None, "a pixel for each point");
         }
     }
 
@@ -568,6 +573,78 @@ mod tests {
         // The middle on the screen is at a quarter in space: the far end is squeezed.
         assert_eq!(Interpolation::Affine.between(a, b, 0.5), Projected { w: 2.0, values: [4.0] });
         assert_eq!(Interpolation::PerspectiveCorrect.between(a, b, 0.5), Projected { w: 1.5, values: [2.0] });
+    }
+
+    /// Triangles that were announced; `None` where one was done.
+    #[derive(Debug, Default)]
+    struct Told(Mutex<Vec<Option<ScreenTriangle>>>);
+
+    impl Told {
+        fn push(&self, what: Option<ScreenTriangle>) {
+            self.0.lock().expect("not poisoned").push(what);
+        }
+    }
+
+    impl Observer for Told {
+        fn begun(&self, what: &dyn Any) {
+            self.push(what.downcast_ref().cloned());
+        }
+
+        fn done(&self) {
+            self.push(None);
+        }
+    }
+
+    /// A right angle whose pixels are met exactly: x + y ≤ 8, but for the row of the upper vertex.
+    const RIGHT_ANGLE: [DVec2; 3] = [dvec2(0.0, 0.0), dvec2(8.0, 0.0), dvec2(0.0, 8.0)];
+
+    #[test]
+    fn observers_are_told_what_each_walk_begins_with() {
+        let told = Arc::new(Told::default());
+        let scissor = Scissor { rect: SCISSOR, observer: Some(told.clone()) };
+        let walk = Walk { clamp: StepClamp::Everywhere, ..Walk::default() };
+        let values = [[1.0], [2.0], [3.0]];
+        let w = [4.0, 5.0, 6.0];
+        let depths = [7.0, 8.0, 9.0];
+        let points: [_; 3] = from_fn(|i| Projected { w: w[i], values: values[i] });
+        let vertex = |i: usize| RIGHT_ANGLE[i];
+        let projected = from_fn(|i| ScreenVertex { position: vertex(i), varyings: points[i] });
+        let with_depth = from_fn(|i| ScreenVertex { position: vertex(i), varyings: (points[i], depths[i]) });
+
+        step_values(vertices(RIGHT_ANGLE, values), walk, scissor.clone(), |_, _, _| ());
+        step_parameter(projected, Interpolation::Reciprocal, walk, scissor.clone(), |_, _, _| ());
+        step_parameter_and_depth(with_depth, Interpolation::Reciprocal, walk, scissor, |_, _, _, _| ());
+
+        let stepped = ScreenTriangle {
+            positions: RIGHT_ANGLE,
+            w: None,
+            varyings: values.map(Vec::from),
+            depth: None,
+            interpolation: Interpolation::Affine,
+            walk,
+        };
+        let plain =
+            ScreenTriangle { w: Some(w), interpolation: Interpolation::Reciprocal, ..stepped.clone() };
+        let deep = ScreenTriangle { depth: Some(depths), ..plain.clone() };
+        let told = told.0.lock().expect("not poisoned");
+        assert_eq!(*told, [Some(stepped), None, Some(plain), None, Some(deep), None]);
+    }
+
+    #[test]
+    fn depths_are_linear_on_the_screen() {
+        // x + 2 y at the vertices, and so everywhere, though the vertices are at different distances.
+        let (depths, w) = ([0.0, 8.0, 16.0], [1.0, 2.0, 4.0]);
+        let triangle = from_fn(|i| ScreenVertex {
+            position: RIGHT_ANGLE[i],
+            varyings: (Projected { w: w[i], values: [] }, depths[i]),
+        });
+        let (correct, walk) = (Interpolation::PerspectiveCorrect, Walk::default());
+        let mut pixels = 0;
+        step_parameter_and_depth(triangle, correct, walk, SCISSOR, |x, y, _, depth| {
+            assert!(is_near(depth, f64::from(x + 2 * y), 1.0), "{depth} at ({x}, {y})");
+            pixels += 1;
+        });
+        assert_eq!(pixels, 9 + 8 + 7 + 6 + 5 + 4 + 3 + 2);
     }
 
     #[test]

@@ -294,6 +294,18 @@ mod tests {
     }
 
     #[test]
+    fn large_exponents_are_not_multiplied() {
+        // Ten squarings are x¹⁰²⁴, and not rounded as a power is.
+        let squared = (0..10).fold(0.9, |x: f64, _| x * x);
+        assert_ne!(squared, libm::pow(0.9, 1024.0));
+        assert_eq!(power(0.9, 1024.0), squared);
+        // Beyond, each squaring would double the error: of (1 − 10⁻⁶) to the 10⁶ it would reach the tenth digit.
+        for exponent in [1025.0, 1e6 + 1.0, 4e9] {
+            assert_eq!(power(0.999_999, exponent), libm::pow(0.999_999, exponent), "{exponent}");
+        }
+    }
+
+    #[test]
     fn light_from_straight_above_and_from_the_side() {
         let up = [0.0, 1.0, 0.0];
         let material =
@@ -306,6 +318,27 @@ mod tests {
         let lamp = Light::Point { position: [0.0, 3.0, 4.0], intensity: 50.0 };
         assert_eq!(lamp.at([0.0; 3]), ([0.0, 0.6, 0.8], 2.0), "50 at the distance 1 is 2 at the distance 5");
         assert_eq!(Light::Directional([0.0, 1.0, 0.0]).at([9.0; 3]), ([0.0, 1.0, 0.0], 1.0));
+    }
+
+    #[test]
+    fn a_highlight_is_added_in_the_color_of_the_light() {
+        // The light at half intensity straight above, the eye 60° beside it: the ray is mirrored to the light itself, and
+        // the half vector is 30° from the normal. Squared, the cosines are 1/4 and 3/4.
+        let (up, eye) = ([0.0, 1.0, 0.0], [0.75_f64.sqrt(), 0.5, 0.0]);
+        let shade = |highlight, to_eye| {
+            let material = Material { ambient: 0.1, diffuse: 0.2, specular: 0.5, exponent: 2.0, highlight };
+            material.shade([100.0, 50.0, 0.0], up, (up, 0.5), to_eye)
+        };
+        // A fifth of the surface's color, and of half the light's 255 · 0.5 as much as the square says.
+        for (highlight, to_eye, gloss) in [
+            (Highlight::None, up, 0.0),
+            (Highlight::Phong, up, 63.75),
+            (Highlight::Phong, eye, 15.9375),
+            (Highlight::BlinnPhong, eye, 47.8125),
+        ] {
+            let (found, expected) = (shade(highlight, to_eye), [20.0 + gloss, 10.0 + gloss, gloss]);
+            assert!((0..3).all(|i| (found[i] - expected[i]).abs() < 1e-12), "{highlight:?}: {found:?}");
+        }
     }
 
     #[test]

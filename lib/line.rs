@@ -204,7 +204,7 @@ mod tests {
         assert_eq!(pixels(dvec2(-far, 7.0), dvec2(far, 7.0)).len(), 200, "a line across the whole scissor");
         assert_eq!(pixels(dvec2(7.0, -far), dvec2(7.0, far)).len(), 200);
         assert!(pixels(dvec2(far, far), dvec2(2.0 * far, far)).is_empty());
-        assert!(pixels(dvec2(-f64::MAX, -1.0), dvec2(f64::MAX, 1.0)).len() <= 200);
+        assert!(pixels(dvec2(-f64::MAX, 7.0), dvec2(f64::MAX, 8.0)).is_empty(), "Δx is infinite");
     }
 
     #[test]
@@ -212,6 +212,36 @@ mod tests {
         assert!(pixels(dvec2(1.0, -0.5), dvec2(6.0, -0.9)).is_empty(), "below row 0");
         assert!(pixels(dvec2(-0.9, 1.0), dvec2(-0.5, 6.0)).is_empty(), "left of column 0");
         assert_eq!(pixels(dvec2(-1.5, 2.0), dvec2(2.5, 2.0)), [(0, 2), (1, 2)], "no column twice");
+    }
+
+    #[test]
+    fn what_is_skipped_counts() {
+        // x = −1.5 −0.5 0.5 1.5 2.5 3.5 4.5 5.5, and y goes from 0 up by ½: of them x ≥ 2 is seen.
+        let (a, b) = (dvec2(-1.5, 0.0), dvec2(6.5, 4.0));
+        let seen = Rect { left: 2, bottom: 0, right: 200, top: 200 };
+        let mut columns = Vec::new();
+        dda(a, b, StepAxis::Longer, seen, |x, y| columns.push((x, y)));
+        assert_eq!(columns, [(2, 2), (3, 2), (4, 3), (5, 3)]);
+        // The same along y.
+        let seen = Rect { left: 0, bottom: 2, right: 200, top: 200 };
+        let mut rows = Vec::new();
+        dda(dvec2(a.y, a.x), dvec2(b.y, b.x), StepAxis::Longer, seen, |x, y| rows.push((y, x)));
+        assert_eq!(rows, columns);
+
+        let mut steps = Vec::new();
+        Line { a: dvec2(0.0, 1.0), b: dvec2(9.0, 1.0), axis: StepAxis::Longer }
+            .step(3..5, |pixel, _| steps.push(pixel));
+        assert_eq!(steps, [(3, 1), (4, 1)], "no step beyond what is visible");
+    }
+
+    #[test]
+    fn a_diagonal_is_y_major() {
+        let is_x_major = |x, y, axis| Line { a: DVec2::ZERO, b: dvec2(x, y), axis }.is_x_major();
+        for (x, y, expected) in [(2.0, 2.0, false), (2.0, -2.0, false), (2.1, 2.0, true), (2.0, -2.1, false)]
+        {
+            assert_eq!(is_x_major(x, y, StepAxis::Longer), expected, "({x}, {y})");
+            assert!(is_x_major(x, y, StepAxis::X));
+        }
     }
 
     #[test]

@@ -209,6 +209,26 @@ mod tests {
     }
 
     #[test]
+    fn a_bright_texel_fades_from_level_to_level() {
+        // Black, but for two texels of the first column: a quarter of each is left in level 1, and in level 2 a quarter of
+        // their sum.
+        let mut texels = vec![Color::BLACK; 16];
+        texels[0] = Color::gray(160);
+        texels[12] = Color::gray(80);
+        let maps = MipMaps::new(&Texture::new(4, 4, texels));
+        let (low, high) = ([0.125, 0.125], [0.125, 0.875]);
+        let nearest = |uv, level: f64| maps.bilinear(uv, level, AddressMode::Clamp)[0];
+        assert_eq!(
+            [0.0, 0.4, 0.6, 1.0, 1.4, 1.5, 2.0].map(|level| nearest(low, level)),
+            [160.0, 160.0, 40.0, 40.0, 40.0, 15.0, 15.0]
+        );
+        assert_eq!([0.0, 1.0, 2.0].map(|level| nearest(high, level)), [80.0, 20.0, 15.0]);
+        let between = |level: f64| maps.trilinear(low, level, AddressMode::Clamp)[0];
+        // 160 and 40, three quarters and one; 40 and 15 likewise.
+        assert_eq!([0.25, 1.0, 1.25].map(between), [130.0, 40.0, 33.75]);
+    }
+
+    #[test]
     fn between_levels() {
         let maps = MipMaps::new(&ramp(4, 4));
         let at = |level: f64| maps.trilinear([0.5, 0.5], level, AddressMode::Clamp)[0];

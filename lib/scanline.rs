@@ -315,6 +315,28 @@ pub(crate) mod tests {
     }
 
     #[test]
+    fn a_fractional_base_has_its_row_in_both_halves() {
+        // The lower half has no height, and its slopes are not finite. To the right of the base x falls by 4/3 a row.
+        let expected = "\
+            ............\n\
+            ............\n\
+            ............\n\
+            .1..........\n\
+            .11.........\n\
+            .111........\n\
+            .22222......\n";
+        assert_eq!(drawn([(1.0, 0.5), (5.0, 0.5), (1.0, 3.5)], EdgeWalk::Clamped), expected);
+    }
+
+    #[test]
+    fn vertices_of_equal_height_keep_their_order() {
+        let order = |triangle: [(f64, f64); 3]| split(triangle.map(DVec2::from)).expect("an area").order;
+        assert_eq!(order([(0.0, 0.0), (0.0, 4.0), (4.0, 4.0)]), [0, 1, 2]);
+        assert_eq!(order([(0.0, 0.0), (4.0, 0.0), (0.0, 4.0)]), [0, 1, 2]);
+        assert_eq!(order([(0.0, 4.0), (4.0, 0.0), (0.0, 1.0)]), [1, 2, 0]);
+    }
+
+    #[test]
     fn nearly_horizontal_edges_overshoot_unless_clamped() {
         // Rows 1 and 2, and only 2/1000 of a pixel between them: one step of y moves x by more than 1000.
         // The row of a fractional middle vertex belongs to both halves, hence the 2s.
@@ -382,6 +404,7 @@ pub(crate) mod tests {
         assert_eq!(columns(0.0, 1e300, [least, least]), 0..0, "a scissor without columns");
         assert_eq!(columns(2.0, 1e300, [0, most]), 2..most);
         assert_eq!(columns(f64::NAN, 3.0, [0, 10]), 0..0);
+        assert_eq!(columns(2.0, 5.0, [0, 2]), 0..0, "it begins where the scissor ends");
     }
 
     fn point() -> impl Strategy<Value = DVec2> {

@@ -340,4 +340,14 @@ mod tests {
         assert_eq!(at(0.0, 0.25, AddressMode::Repeat), 50.0, "half of the texel from the other side");
         assert_eq!(at(0.0, 0.25, AddressMode::Mirror), 0.0);
     }
+
+    #[test]
+    fn a_plane_of_grays_stays_a_plane_between_its_texels() {
+        // 10 a column and 30 a row. (0.7, 0.6) is at the column 2.1 − ½ and the row 1.8 − ½.
+        let texture = Texture::new(3, 3, [0, 10, 20, 30, 40, 50, 60, 70, 80].map(Color::gray).to_vec());
+        for mode in [AddressMode::Clamp, AddressMode::Repeat, AddressMode::Mirror] {
+            let [gray, ..]: [f64; 3] = texture.bilinear([0.7, 0.6], mode);
+            assert!((gray - (10.0 * 1.6 + 30.0 * 1.3)).abs() < 1e-12, "{mode:?}: {gray}");
+        }
+    }
 }

@@ -419,6 +419,78 @@ mod tests {
     }
 
     #[test]
+    fn positions_are_snapped_if_they_are_near() {
+        assert_eq!(snap(dvec2(65_536.0, -0.5)), Some([16_777_216, -128]));
+        assert_eq!(snap(dvec2(1.5 / 256.0, -1.5 / 256.0)), Some([2, -2]), "halves away from zero");
+        for far in [65_536.1, -65_537.0, f64::NAN, f64::INFINITY] {
+            assert_eq!([snap(dvec2(far, 1.0)), snap(dvec2(1.0, far))], [None, None], "{far}");
+        }
+    }
+
+    #[test]
+    fn an_edge_without_length_is_neither_top_nor_left() {
+        assert!(!EdgeFunction::new([3, 5], [3, 5]).is_top_left());
+    }
+
+    #[test]
+    fn areas_and_weights_by_hand() {
+        // Legs of 4: doubled, the area is 16. At (1.5, 0.5) the parts opposite to the vertices are 8, 6 and 2 of it.
+        let [a, b, c] = [dvec2(0.0, 0.0), dvec2(4.0, 0.0), dvec2(0.0, 4.0)];
+        let unit = SUBPIXELS * SUBPIXELS;
+        let (left, right) =
+            (Coverage::new([a, b, c]).expect("area"), Coverage::new([a, c, b]).expect("area"));
+        assert_eq!([left.signed_area(), right.signed_area()], [16.0, -16.0]);
+        assert_eq!([left.twice_area, right.twice_area], [16 * unit, 16 * unit]);
+        let values = left.edge_values(center(1, 0));
+        assert_eq!(values, [8 * unit, 6 * unit, 2 * unit]);
+        assert_eq!(left.weights::<f64>(values), [0.375, 0.125]);
+        // One pixel to the right is a quarter of the second vertex more; one pixel up, of the third.
+        assert_eq!(left.weight_step::<f64>(), [0.25, 0.0]);
+        assert_eq!(right.weight_step::<f64>(), [0.0, 0.25]);
+        assert_eq!(left.weight_gradients::<f64>(), [[0.25, 0.0], [0.0, 0.25]]);
+        assert!(left.covers(values));
+        for outside in [[-1, 6, 2], [8, -1, 2], [8, 6, -1]] {
+            assert!(!left.covers(outside));
+        }
+        // The edge from b to c is the right one, the others are the bottom and the left one.
+        assert_eq!(
+            left.edges.map(|edge| [edge.covers(0), edge.covers(1)]),
+            [[false, true], [true, true], [false, true]]
+        );
+    }
+
+    #[test]
+    fn a_bounding_box_has_the_centers_between_the_vertices() {
+        let all = Rect { left: -50, bottom: -50, right: 50, top: 50 };
+        let bounding_box = |triangle: [(f64, f64); 3]| {
+            Coverage::new(triangle.map(DVec2::from)).expect("area").bounding_box(all)
+        };
+        // Centers from 1.5 to 8.5, and from 2.5 to 3.5.
+        let found = bounding_box([(0.6, 1.6), (9.4, 1.7), (5.0, 3.6)]);
+        assert_eq!(found, Rect { left: 1, bottom: 2, right: 9, top: 4 });
+        // Centers on the border count: those of the columns −3 and 2, and of the rows −2 and 1.
+        let found = bounding_box([(-2.5, -1.5), (2.5, -1.5), (0.0, 1.5)]);
+        assert_eq!(found, Rect { left: -3, bottom: -2, right: 3, top: 2 });
+    }
+
+    #[test]
+    fn covered_pixels_are_those_of_all_whose_values_say_so() {
+        let rect = Rect { left: -1, bottom: -1, right: 10, top: 6 };
+        for triangle in [[A, B, D], [A, C, D], [(-3.0, 0.2), (9.3, 1.9), (4.1, 7.7)]] {
+            let coverage = Coverage::new(triangle.map(DVec2::from)).expect("area");
+            let all: Vec<_> = coverage.all_pixels(rect).collect();
+            let places: Vec<_> = all.iter().map(|&(x, y, _)| (x, y)).collect();
+            let expected: Vec<_> = (-1..6).flat_map(|y| (-1..10).map(move |x| (x, y))).collect();
+            assert_eq!(places, expected);
+            let covered = all.into_iter().filter(|&(_, _, values)| coverage.covers(values));
+            assert!(covered.eq(coverage.pixels(rect)));
+            for (x, y, values) in coverage.pixels(rect) {
+                assert_eq!(values, coverage.edge_values(center(x, y)), "at ({x}, {y})");
+            }
+        }
+    }
+
+    #[test]
     fn exact_as_far_as_is_said() {
         let far = 1_i64 << 24;
         let positions = [[-far, -far], [far, far], [far, -far], [-far + 1, far], [0, 0], [1, -1]];

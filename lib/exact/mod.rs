@@ -164,3 +164,37 @@ fn draw_triangle<R: Scalar, S: Shader<N>, P: Probe + ?Sized, const N: usize>(
     }
 }
 // ANCHOR_END: draw_triangle
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    use glam::dvec3;
+
+    fn vertex<const N: usize>([x, y]: [f64; 2], w: f64, varyings: [f64; N]) -> NdcVertex<N> {
+        NdcVertex { position: dvec3(x, y, 0.5), w, varyings }
+    }
+
+    #[test]
+    fn the_guard_band_is_twice_the_view_in_front_of_the_eye() {
+        let is_inside = |place, w| is_in_guard_band(&vertex(place, w, []));
+        assert!(is_inside([2.0, -2.0], 1.0) && is_inside([-2.0, 2.0], 0.25));
+        for outside in [[2.1, 0.0], [-2.1, 0.0], [0.0, 2.1], [0.0, -2.1]] {
+            assert!(!is_inside(outside, 1.0), "{outside:?}");
+        }
+        assert!(!is_inside([0.0, 0.0], 0.0) && !is_inside([0.0, 0.0], -1.0));
+    }
+
+    #[test]
+    fn what_is_beyond_the_guard_band_is_cut_off() {
+        // To each of the four sides: half of the way out to 4 is left, and the value there is half of 8.
+        let sides: [fn(f64, f64) -> [f64; 2]; 4] =
+            [|x, y| [x, y], |x, y| [-x, -y], |x, y| [y, x], |x, y| [-y, -x]];
+        for turned in sides {
+            let at = |x, y, value| vertex(turned(x, y), 2.0, [value]);
+            let cut = cut_to_guard_band([at(0.0, 0.0, 0.0), at(4.0, 0.0, 8.0), at(0.0, 1.0, 0.0)]);
+            let expected = [at(0.0, 0.0, 0.0), at(2.0, 0.0, 4.0), at(2.0, 0.5, 4.0), at(0.0, 1.0, 0.0)];
+            assert_eq!(cut.as_slice(), expected);
+        }
+    }
+}

@@ -166,6 +166,13 @@ mod tests {
     }
 
     #[test]
+    fn samples_of_a_pixel() {
+        let samples = Samples::new(3, 2, &GRID_2X2);
+        let places: Vec<_> = samples.of_pixel(2, 1).collect();
+        assert_eq!(places, [(0, [576, 320]), (1, [704, 320]), (2, [576, 448]), (3, [704, 448])]);
+    }
+
+    #[test]
     fn a_sample_that_there_is_not_changes_nothing() {
         let mut samples = Samples::new(2, 1, &CENTER);
         for sample in [1, 2, usize::MAX] {
