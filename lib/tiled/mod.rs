@@ -1,4 +1,4 @@
-//! Beyond the book: the fast rasterizer. What [`Exact`](crate::exact::Exact) draws in `f32`, to the last bit, in a
+//! Beyond the book: the fast rasterizer. What [`Exact`] draws in `f32`, to the last bit, in a
 //! fraction of the time.
 //!
 //! Nine things make the difference: eight fragments are shaded at a time ([`lanes`]); every vertex is
@@ -100,7 +100,7 @@ pub use instructions::Instructions;
 /// The fast rasterizer. It keeps its working memory from picture to picture: make one and use it again.
 ///
 /// Computes in `f32`. A mesh is drawn by [`Self::draw_mesh`]; as a [`Rasterizer`] it takes triangles that others have
-/// shaded and clipped, and is not as fast. It reports nothing: [`Exact`](crate::exact::Exact) draws the same and does.
+/// shaded and clipped, and is not as fast. It reports nothing: [`Exact`] draws the same and does.
 #[derive(Debug, Default)]
 pub struct Tiled {
     instructions: Instructions,
@@ -128,7 +128,7 @@ impl Tiled {
 
     // ANCHOR: draw_mesh
     /// Draws a mesh into a target: all stages of the pipeline, and the load operation. The picture is that of
-    /// [`draw`](crate::draw) with [`Exact<f32>`](crate::exact::Exact), to the last bit (but for what is not a number: there are
+    /// [`draw`] with [`Exact<f32>`](crate::exact::Exact), to the last bit (but for what is not a number: there are
     /// many ways to write it, and a stored depth may be another one of them).
     ///
     /// # Panics
