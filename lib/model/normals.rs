@@ -46,7 +46,7 @@ pub(super) fn area_vector(corners: &[DVec3]) -> DVec3 {
 pub(super) fn direction(vector: DVec3) -> Option<DVec3> {
     // In two steps, since squares of large or small coordinates may leave the range.
     let largest = vector.abs().max_element();
-    (largest > 0.0 && largest.is_finite()).then(|| (vector / largest).normalize())
+    (largest > 0.0 && vector.is_finite()).then(|| (vector / largest).normalize())
 }
 
 /// The normal of a face by itself.
@@ -271,6 +271,18 @@ mod tests {
     ];
     const QUADS: [[usize; 4]; 6] =
         [[4, 5, 6, 7], [1, 0, 3, 2], [5, 1, 2, 6], [0, 4, 7, 3], [7, 6, 2, 3], [0, 1, 5, 4]];
+
+    #[test]
+    fn a_vector_that_leaves_the_range_has_no_direction() {
+        assert_eq!(direction(dvec3(0.0, 1e308, 0.0)), Some(DVec3::Y));
+        for odd in [f64::NAN, f64::INFINITY] {
+            assert_eq!(direction(dvec3(odd, 5.0, 0.0)), None);
+        }
+        // (b − a) × (c − a) is ∞ − ∞ along x.
+        let corners = [dvec3(0.0, 0.0, 0.0), dvec3(0.0, 1e308, 1e308), dvec3(1.0, 1e308, 1e308)];
+        assert!(area_vector(&corners).x.is_nan());
+        assert_eq!(face_normal(&corners), DVec3::NEG_Z);
+    }
 
     #[test]
     fn a_cube_however_it_is_cut() {
