@@ -30,7 +30,7 @@ fn line([x1, y1]: [f64; 2], [x2, y2]: [f64; 2], color: &str) -> String {
 /// A table as an image.
 pub(crate) fn table(table: &Table) -> String {
     const LINE: f64 = 22.0;
-    const NAMES: f64 = 160.0;
+    const NAMES: f64 = 190.0;
     const COLUMN: f64 = 125.0;
     let width = NAMES + COLUMN * table.columns.len() as f64 + 20.0;
     let right = |column: usize| NAMES + COLUMN * (column + 1) as f64;

@@ -28,14 +28,14 @@ pub(crate) fn pictures(contestants: &mut [Contestant]) -> Result<(), Box<dyn Err
         let difference = Difference::between(&contestant.picture()?, &expected);
         let Difference { uncovered, common, mean, others } = difference;
         say(&format!(
-            "  {:16}{} thread{}: {uncovered:6} of {common} pixels covered differently, {others:7} in another color, mean {mean:.3}",
-            contestant.peer.name,
+            "  {:22}{} thread{}: {uncovered:6} of {common} pixels covered differently, {others:7} in another color, mean {mean:.3}",
+            contestant.name(),
             contestant.threads,
             if contestant.threads == 1 { " " } else { "s" },
         ))?;
         let (part, most) = allowed(contestant.peer.coverage);
         if common == 0 || uncovered as f64 > part * common as f64 || mean > most {
-            return Err(format!("{} does not draw the same picture", contestant.peer.name).into());
+            return Err(format!("{} does not draw the same picture", contestant.name()).into());
         }
     }
     Ok(())

@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 use std::error::Error;
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write, stdin, stdout};
+use std::path::Path;
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::str::FromStr;
 
@@ -29,17 +30,25 @@ const WARM_TIME: f64 = 300.0;
 pub(crate) struct Contestant {
     pub(crate) peer: Peer,
     pub(crate) threads: usize,
+    /// Whether its program is another build of this one.
+    pub(crate) is_other_build: bool,
     child: Child,
     orders: ChildStdin,
     answers: BufReader<ChildStdout>,
 }
 
 impl Contestant {
-    /// Starts a child. The error says why the renderer is not to be had.
-    pub(crate) fn start(peer: Peer, threads: usize, scene: &str) -> Result<Self, Box<dyn Error>> {
+    /// Starts a child: this program, or another build of it. The error says why the renderer is not to be had.
+    pub(crate) fn start(
+        other_build: Option<&Path>,
+        peer: Peer,
+        threads: usize,
+        scene: &str,
+    ) -> Result<Self, Box<dyn Error>> {
         // 0 makes llvmpipe draw in the thread that calls it. With 1 there would be two: that one, and one that draws.
         let llvmpipe_threads = if threads == 1 { 0 } else { threads };
-        let mut child = Command::new(std::env::current_exe()?)
+        let program = other_build.map_or_else(std::env::current_exe, |path| Ok(path.to_owned()))?;
+        let mut child = Command::new(program)
             .args([CHILD, peer.name, &threads.to_string(), scene])
             .env("GALLIUM_DRIVER", "llvmpipe")
             .env("LP_NUM_THREADS", llvmpipe_threads.to_string())
@@ -48,11 +57,17 @@ impl Contestant {
             .spawn()?;
         let orders = child.stdin.take().ok_or("no standard input")?;
         let answers = BufReader::new(child.stdout.take().ok_or("no standard output")?);
-        let mut started = Self { peer, threads, child, orders, answers };
+        let is_other_build = other_build.is_some();
+        let mut started = Self { peer, threads, is_other_build, child, orders, answers };
         match started.answer()?.as_str() {
             "ready" => Ok(started),
             problem => Err(problem.into()),
         }
+    }
+
+    /// What it is called: the renderer's name, with a mark if it is another build of it.
+    pub(crate) fn name(&self) -> String {
+        format!("{}{}", self.peer.name, if self.is_other_build { ", other" } else { "" })
     }
 
     /// Milliseconds a frame, when so many are drawn.
@@ -82,7 +97,7 @@ impl Contestant {
         let mut line = String::new();
         self.answers.read_line(&mut line)?;
         if line.is_empty() {
-            return Err(format!("{} has ended by itself", self.peer.name).into());
+            return Err(format!("{} has ended by itself", self.name()).into());
         }
         Ok(line.trim_end().to_owned())
     }

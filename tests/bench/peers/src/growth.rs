@@ -57,7 +57,7 @@ fn curves_over(
     let mut patient = peers.to_vec();
     for name in scenes {
         let x = size(&Scene::named(name).ok_or("no such scene")?);
-        let mut contestants = start(&patient, &[1], name)?;
+        let mut contestants = start(None, &patient, &[1], name)?;
         let milliseconds = measured(&mut contestants, options.rounds.min(ROUNDS))?;
         for (contestant, &time) in contestants.iter_mut().zip(&milliseconds) {
             let memory = contestant.memory()?;
@@ -90,7 +90,7 @@ fn over_threads(options: &Options, peers: &[Peer], scene: &str) -> Result<(), Bo
     say(&format!("threads, {cores} cores"))?;
     let parallel: Vec<Peer> = peers.iter().filter(|peer| peer.threads == Threads::Many).copied().collect();
     let threads: Vec<usize> = THREADS.into_iter().filter(|&threads| threads <= cores).collect();
-    let mut contestants = start(&parallel, &threads, scene)?;
+    let mut contestants = start(None, &parallel, &threads, scene)?;
     let milliseconds = measured(&mut contestants, options.rounds)?;
     let mut times = empty_curves(&parallel);
     for (contestant, &time) in contestants.iter().zip(&milliseconds) {

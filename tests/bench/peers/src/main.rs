@@ -6,7 +6,7 @@
 //! ```
 //!
 //! Options: `--quick` (few rounds), `--rounds N`, `--out FOLDER` (of the images; `target/bench` unless said otherwise),
-//! and words: only renderers and scenes with one of them in their names. The reference, llvmpipe, always takes part.
+//! `--other PROGRAM` (another build of this program, whose rasterizers take part in the five scenes), and words: only renderers and scenes with one of them in their names. The reference, llvmpipe, always takes part.
 //!
 //! First the pictures are compared with the reference's; if one is not the same, nothing is measured.
 
@@ -31,7 +31,8 @@ mod table;
 use std::error::Error;
 use std::fs;
 use std::io::{Write, stdout};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use contestant::{CHILD, Contestant};
 use ours::Threads;
@@ -47,10 +48,16 @@ fn main() -> Result<(), Box<dyn Error>> {
     {
         return contestant::serve(renderer, threads.parse()?, scene);
     }
+    if args == [MACHINE] {
+        return say(&machine::description());
+    }
     let options = Options::from_args(&args)?;
     fs::create_dir_all(&options.folder)?;
     if options.growth { growth::run(&options) } else { five_scenes(&options) }
 }
+
+/// The argument that makes this program say what it is compiled for, and on which processor it runs.
+const MACHINE: &str = "--machine";
 
 /// What the command line asks for.
 struct Options {
@@ -58,13 +65,15 @@ struct Options {
     growth: bool,
     /// Where the images go.
     folder: PathBuf,
+    /// Another build of this program, which takes part.
+    other: Option<PathBuf>,
     words: Vec<String>,
 }
 
 impl Options {
     fn from_args(args: &[String]) -> Result<Self, Box<dyn Error>> {
-        let mut options =
-            Self { rounds: 15, growth: false, folder: PathBuf::from("target/bench"), words: vec![] };
+        let folder = PathBuf::from("target/bench");
+        let mut options = Self { rounds: 15, growth: false, folder, other: None, words: vec![] };
         let mut args = args.iter();
         while let Some(arg) = args.next() {
             match arg.as_str() {
@@ -72,6 +81,7 @@ impl Options {
                 "--growth" => options.growth = true,
                 "--rounds" => options.rounds = args.next().ok_or("--rounds wants a number")?.parse()?,
                 "--out" => options.folder = args.next().ok_or("--out wants a folder")?.into(),
+                "--other" => options.other = Some(args.next().ok_or("--other wants a program")?.into()),
                 option if option.starts_with("--") => {
                     return Err(format!("no option is called {option}").into());
                 }
@@ -112,11 +122,16 @@ fn say(line: &str) -> Result<(), Box<dyn Error>> {
 
 /// Starts the renderers with these numbers of threads, those that cannot have several with one. Says which are not to
 /// be had.
-fn start(peers: &[Peer], threads: &[usize], scene: &str) -> Result<Vec<Contestant>, Box<dyn Error>> {
+fn start(
+    other_build: Option<&Path>,
+    peers: &[Peer],
+    threads: &[usize],
+    scene: &str,
+) -> Result<Vec<Contestant>, Box<dyn Error>> {
     let mut contestants = vec![];
     for &threads in threads {
         for peer in peers.iter().filter(|peer| threads == 1 || peer.threads == Threads::Many) {
-            match Contestant::start(*peer, threads, scene) {
+            match Contestant::start(other_build, *peer, threads, scene) {
                 Ok(contestant) => contestants.push(contestant),
                 Err(problem) => say(&format!("without {}: {problem}", peer.name))?,
             }
@@ -143,14 +158,20 @@ fn measured(contestants: &mut [Contestant], rounds: u32) -> Result<Vec<f64>, Box
 /// Compares the pictures, takes the times and the memory of the five scenes, and makes the tables.
 fn five_scenes(options: &Options) -> Result<(), Box<dyn Error>> {
     let (scenes, peers) = (options.chosen(&NAMES, |name| name), options.peers());
+    let is_ours = |peer: &&Peer| peers::ours().any(|ours| ours.name == peer.name);
+    let others: Vec<Peer> = peers.iter().filter(is_ours).copied().collect();
     let heads: Vec<String> = scenes.iter().map(|&name| name.to_owned()).collect();
     let mut times = Table::new("Milliseconds a frame (times llvmpipe's)", &heads);
     let mut memory = Table::new("Memory at most, MiB", &heads);
+    let about_other = options.other.as_deref().map(about_build).transpose()?;
     for name in scenes {
         let scene = Scene::named(name).ok_or("no such scene")?;
         times.notes.push(format!("{name}: {}", scene.description()));
         say(&format!("{name}: {}", scene.description()))?;
-        let mut contestants = start(&peers, &[1, 2], name)?;
+        let mut contestants = start(None, &peers, &[1, 2], name)?;
+        if let Some(other) = &options.other {
+            contestants.extend(start(Some(other), &others, &[1, 2], name)?);
+        }
         check::pictures(&mut contestants)?;
         let milliseconds = measured(&mut contestants, options.rounds)?;
         let reference = |threads| {
@@ -168,9 +189,21 @@ fn five_scenes(options: &Options) -> Result<(), Box<dyn Error>> {
         }
     }
     times.notes.push(format!("medians of {} interleaved rounds; {}", options.rounds, machine::description()));
+    times.notes.extend(about_other);
     say(&format!("\n{times}\n{memory}"))?;
     options.save("table.svg", &chart::table(&times))?;
     options.save("memory.svg", &chart::table(&memory))
+}
+
+/// What another build of this program says of itself.
+fn about_build(program: &Path) -> Result<String, Box<dyn Error>> {
+    let output = Command::new(program).arg(MACHINE).output();
+    let output = output.map_err(|error| format!("{}: {error}", program.display()))?;
+    let about = String::from_utf8(output.stdout)?;
+    if !output.status.success() || !about.starts_with("compiled for") {
+        return Err(format!("{}: not a build of this program", program.display()).into());
+    }
+    Ok(format!("other: the same program, {}", about.trim_end()))
 }
 
 fn row_of(contestant: &Contestant) -> Row {
@@ -178,5 +211,5 @@ fn row_of(contestant: &Contestant) -> Row {
         1 => "one thread",
         _ => "two threads",
     };
-    Row { group: group.to_owned(), name: contestant.peer.name.to_owned() }
+    Row { group: group.to_owned(), name: contestant.name() }
 }

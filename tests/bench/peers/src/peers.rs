@@ -21,16 +21,20 @@ impl Peer {
     }
 }
 
+/// Our own.
+pub(crate) fn ours() -> impl Iterator<Item = Peer> {
+    RASTERIZERS.iter().map(|ours| Peer::new(ours.name, ours.threads, ours.coverage))
+}
+
 /// All renderers, ours first.
 pub(crate) fn all() -> Vec<Peer> {
-    let ours = RASTERIZERS.map(|ours| Peer::new(ours.name, ours.threads, ours.coverage));
     let others = [
         Peer::new("euc", Threads::One, Coverage::Near),
         Peer::new("retrofire-core", Threads::One, Coverage::Near),
         Peer::new(REFERENCE, Threads::Many, Coverage::Exact),
         Peer::new("llvmpipe + read", Threads::Many, Coverage::Exact),
     ];
-    ours.into_iter().chain(others).collect()
+    ours().chain(others).collect()
 }
 
 /// Makes a scene ready to be drawn by the renderer of this name.

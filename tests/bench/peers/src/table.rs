@@ -24,12 +24,14 @@ impl Table {
         Self { title: title.to_owned(), columns: columns.to_vec(), rows: vec![], notes: vec![] }
     }
 
-    /// Writes into the cell of a row and a column.
+    /// Writes into the cell of a row and a column. A new row comes after the others of its group.
     pub(crate) fn put(&mut self, row: Row, column: &str, text: String) {
         let Some(column) = self.columns.iter().position(|name| name == column) else { return };
         let place = self.rows.iter().position(|(there, _)| *there == row).unwrap_or_else(|| {
-            self.rows.push((row, vec![String::new(); self.columns.len()]));
-            self.rows.len() - 1
+            let last_of_group = self.rows.iter().rposition(|(there, _)| there.group == row.group);
+            let place = last_of_group.map_or(self.rows.len(), |last| last + 1);
+            self.rows.insert(place, (row, vec![String::new(); self.columns.len()]));
+            place
         });
         self.rows[place].1[column] = text;
     }
@@ -51,13 +53,13 @@ impl Table {
 
 impl fmt::Display for Table {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}\n{:18}", self.title, "")?;
+        write!(f, "{}\n{:24}", self.title, "")?;
         for column in &self.columns {
             write!(f, "{column:>18}")?;
         }
         for (is_group, name, cells) in self.lines() {
             let indent = if is_group { "" } else { "  " };
-            write!(f, "\n{:18}", format!("{indent}{name}"))?;
+            write!(f, "\n{:24}", format!("{indent}{name}"))?;
             for cell in cells {
                 write!(f, "{cell:>18}")?;
             }
