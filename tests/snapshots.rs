@@ -3,8 +3,6 @@
 //! Each variant is a test of its own, which fails if there is no accepted picture: `cargo test --test snapshots affine`.
 //! One more sees that there is no picture without a variant.
 
-#[path = "support/chapters.rs"]
-mod chapters;
 #[path = "support/pictures.rs"]
 mod pictures;
 #[path = "support/review.rs"]
@@ -12,27 +10,37 @@ mod review;
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use chapters::CHAPTERS;
 use libtest_mimic::{Arguments, Failed, Trial};
 use pictures::Outcome;
-use rasterbook::figure::Mistake;
+use rasterbook::program::PROGRAMS;
+use serde_json::Value;
 
 fn main() -> ExitCode {
     // A failed comparison is reported once, by its test.
     std::panic::set_hook(Box::new(|_| {}));
     let arguments = Arguments::from_args();
     let accepted = Arc::new(Accepted::default());
-    let mut trials: Vec<Trial> = all_pictures().map(|picture| picture.trial(Arc::clone(&accepted))).collect();
-    trials.push(Trial::test("no_snapshot_without_a_variant", no_orphan));
+    let drawn = match all_pictures() {
+        Ok(drawn) => drawn,
+        Err(reason) => {
+            eprint_summary(&format!("The programs do not say what they can draw: {reason:?}\n"));
+            return ExitCode::FAILURE;
+        }
+    };
+    let trial = |picture: &Picture| picture.clone().trial(Arc::clone(&accepted));
+    let mut trials: Vec<Trial> = drawn.iter().map(trial).collect();
+    let wanted = names_of_files(&drawn);
+    trials.push(Trial::test("no_snapshot_without_a_variant", move || no_orphan(&wanted)));
     let conclusion = libtest_mimic::run(&arguments, trials);
     if arguments.list {
         return conclusion.exit_code();
     }
-    match review_page() {
+    match review_page(&drawn) {
         Ok(page) => eprint_summary(&(accepted.summary() + &page)),
         Err(error) => eprint_summary(&format!("The page for the review cannot be written: {error}\n")),
     }
@@ -89,8 +97,7 @@ const ACCEPT_ALL: &str = if cfg!(windows) {
 };
 
 /// Writes the page of all pictures that wait for a review, and says how to go on; empty if none waits.
-fn review_page() -> std::io::Result<String> {
-    let drawn: Vec<Picture> = all_pictures().collect();
+fn review_page(drawn: &[Picture]) -> std::io::Result<String> {
     pictures::forget_others(&drawn.iter().map(|picture| picture.name.as_str()).collect());
     let failures = pictures::failures();
     let entries: Vec<review::Entry> = drawn.iter().map(Picture::entry).collect();
@@ -114,52 +121,62 @@ fn review_page() -> std::io::Result<String> {
 /// A picture that some program can draw.
 #[derive(Clone)]
 struct Picture {
-    /// The path of the program.
-    program: &'static str,
     /// The name of the program.
-    chapter: &'static str,
-    variant: &'static str,
+    program: &'static str,
+    variant: String,
     /// What to look for.
-    look: &'static str,
-    frame: Option<u32>,
+    look: String,
+    frame: Option<u64>,
     /// Whether it is a mistake beside its remedy, and where they differ.
     is_comparison: bool,
     name: String,
 }
 
-fn all_pictures() -> impl Iterator<Item = Picture> {
-    let rows = CHAPTERS.iter().flat_map(|&(chapter, program)| {
-        chapter.variants.iter().map(move |variant| (chapter, program, variant))
-    });
-    rows.flat_map(|(chapter, program, variant)| {
-        let name = format!("{}__{}", chapter.name, variant.name);
-        // Of an animation the first, a middle and the last frame.
-        let frames = match variant.animation {
-            None => vec![None],
-            Some(animation) => [0, animation.frames / 2, animation.frames - 1].map(Some).to_vec(),
-        };
-        let picture = Picture {
-            program,
-            chapter: chapter.name,
-            variant: variant.name,
-            look: variant.look,
-            frame: None,
-            is_comparison: false,
-            name,
-        };
-        let comparison = match variant.mistake {
-            Mistake::RemediedBy(remedy) => {
-                let name = format!("{}--{remedy}", picture.name);
-                Some(Picture { is_comparison: true, name, ..picture.clone() })
-            }
-            Mistake::No | Mistake::WithoutRemedy => None,
-        };
-        let single = frames.into_iter().map(move |frame| {
-            let at = frame.map_or_else(String::new, |frame| format!("@{frame:03}"));
-            Picture { frame, name: format!("{}{at}", picture.name), ..picture.clone() }
-        });
-        single.chain(comparison)
-    })
+/// Where a program is: beside the first one.
+fn path_of(program: &str) -> PathBuf {
+    let first = Path::new(env!("CARGO_BIN_EXE_ch01_pixels"));
+    first.with_file_name(format!("{program}{}", std::env::consts::EXE_SUFFIX))
+}
+
+/// What the programs say that they can draw.
+fn all_pictures() -> Result<Vec<Picture>, Failed> {
+    let mut pictures = vec![];
+    for program in &PROGRAMS {
+        let output = Command::new(path_of(program.name)).args(["--list", "--format", "json"]).output()?;
+        let list: Value = serde_json::from_slice(&output.stdout)?;
+        let variants = list["variants"].as_array().ok_or("a list without variants")?;
+        pictures.extend(variants.iter().flat_map(|variant| pictures_of(program.name, variant)));
+    }
+    Ok(pictures)
+}
+
+/// The pictures of a variant, from its line in the list.
+fn pictures_of(program: &'static str, variant: &Value) -> Vec<Picture> {
+    let [name, look] = ["name", "look"].map(|key| variant[key].as_str().unwrap_or_default().to_owned());
+    let picture = Picture {
+        program,
+        name: format!("{program}__{name}"),
+        variant: name,
+        look,
+        frame: None,
+        is_comparison: false,
+    };
+    // Of an animation the first, a middle and the last frame.
+    let mut pictures = match variant["animation"]["frames"].as_u64() {
+        None => vec![picture.clone()],
+        Some(frames) => [0, frames / 2, frames - 1]
+            .map(|frame| Picture {
+                frame: Some(frame),
+                name: format!("{}@{frame:03}", picture.name),
+                ..picture.clone()
+            })
+            .to_vec(),
+    };
+    if let Some(remedy) = variant["remedy"].as_str() {
+        let name = format!("{}--{remedy}", picture.name);
+        pictures.push(Picture { is_comparison: true, name, ..picture });
+    }
+    pictures
 }
 
 impl Picture {
@@ -179,7 +196,7 @@ impl Picture {
 
     /// What follows the program's name on the command line, but for where to draw.
     fn arguments(&self) -> Vec<String> {
-        let mut arguments = vec![self.variant.to_owned()];
+        let mut arguments = vec![self.variant.clone()];
         if let Some(frame) = self.frame {
             arguments.extend(["--frame".to_owned(), frame.to_string()]);
         }
@@ -192,7 +209,7 @@ impl Picture {
     /// Runs the program as a reader would, and takes the file that it wrote.
     fn draw(&self) -> Result<Vec<u8>, String> {
         let file = pictures::drawing_folder().join(format!("{}.png", self.name));
-        let mut command = Command::new(self.program);
+        let mut command = Command::new(path_of(self.program));
         command.args(self.arguments()).arg("--out").arg(&file);
         let output = command.output().map_err(|error| format!("{}: {error}", self.program))?;
         if !output.status.success() {
@@ -203,20 +220,23 @@ impl Picture {
     }
 
     fn entry(&self) -> review::Entry {
-        let command = format!("cargo run --bin {} -- {} --inspect", self.chapter, self.arguments().join(" "));
+        let command = format!("cargo run --bin {} -- {} --inspect", self.program, self.arguments().join(" "));
         review::Entry {
             name: self.name.clone(),
-            look: self.look,
+            look: self.look.clone(),
             // The pixels of a comparison belong to three pictures.
             inspect: (!self.is_comparison).then_some(command),
         }
     }
 }
 
-fn no_orphan() -> Result<(), Failed> {
-    let wanted: BTreeSet<String> = all_pictures()
-        .flat_map(|picture| [format!("{}.snap", picture.name), format!("{}.snap.png", picture.name)])
-        .collect();
+/// The files that belong to these pictures.
+fn names_of_files(pictures: &[Picture]) -> BTreeSet<String> {
+    let names = |picture: &Picture| [".snap", ".snap.png"].map(|end| format!("{}{end}", picture.name));
+    pictures.iter().flat_map(names).collect()
+}
+
+fn no_orphan(wanted: &BTreeSet<String>) -> Result<(), Failed> {
     let mut orphans = Vec::new();
     for entry in std::fs::read_dir(pictures::snapshot_folder())? {
         let name = entry?.file_name().to_string_lossy().into_owned();

@@ -293,12 +293,14 @@ fn number_json(number: f64) -> String {
     if number.is_finite() { format!("{number:?}") } else { "null".to_owned() }
 }
 
-fn text_json(text: &str) -> String {
+/// A text as JSON, in quotation marks.
+pub(crate) fn text_json(text: &str) -> String {
     let mut json = String::from('"');
     for character in text.chars() {
         match character {
             '"' | '\\' => json.extend(['\\', character]),
             '\n' => json.push_str("\\n"),
+            '\0'..' ' => json.push_str(&format!("\\u{:04x}", u32::from(character))),
             _ => json.push(character),
         }
     }
@@ -314,4 +316,16 @@ pub(super) fn table(columns: &[&str], rows: Vec<(String, Vec<Option<f64>>)>) -> 
 /// The names of values: V1, V2, …
 pub(super) fn value_names(count: usize) -> Vec<String> {
     (1..=count).map(|i| format!("V{i}")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn any_text_is_json() {
+        let text = "a \"quoted\" \\ path,\ta bell \u{7} and\nλ";
+        let read: serde_json::Value = serde_json::from_str(&text_json(text)).expect("JSON");
+        assert_eq!(read, text);
+    }
 }

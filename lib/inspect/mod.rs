@@ -14,6 +14,8 @@ mod rows;
 mod steps;
 
 pub use history::History;
+#[cfg(feature = "program")]
+pub(crate) use history::text_json;
 pub use legend::{heat_legend, with_legend};
 pub use overdraw::overdraw;
 pub use record::{histories, history};

@@ -47,7 +47,7 @@ pub(super) struct Request {
     pub(super) show: Option<Asked>,
 }
 
-/// The form of a history.
+/// The form of a history, or of a list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Format {
     /// For people.
@@ -131,8 +131,8 @@ fn explained(mut error: clap::Error, command: &Command) -> clap::Error {
 /// another one that is given, as `--inspect` is with `--out`.
 fn refuse_form_without_report(matches: &ArgMatches, command: &mut Command) -> Result<(), clap::Error> {
     let is_told = matches.get_flag("verbose") || matches.contains_id("format");
-    if is_told && !matches.contains_id("inspect") {
-        let reason = "--verbose and --format are for a report: give --inspect X,Y";
+    if is_told && !matches.contains_id("inspect") && !matches.get_flag("list") {
+        let reason = "--verbose and --format are for a report: give --inspect X,Y, or --list with --format";
         return Err(command.error(ErrorKind::MissingRequiredArgument, reason));
     }
     Ok(())

@@ -7,6 +7,7 @@ mod animation;
 mod arguments;
 mod choice;
 mod failure;
+mod lists;
 mod options;
 mod output;
 mod palette;

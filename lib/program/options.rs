@@ -10,7 +10,7 @@ use super::values::{
     parse_angles, parse_color, parse_frame, parse_name, parse_path, parse_pixel, parse_setting, parse_size,
     parse_zoom,
 };
-use crate::figure::{Chapter, Knob, Mistake, RasterizerChoice, Variant};
+use crate::figure::{Chapter, RasterizerChoice, Variant};
 
 /// The command line of a chapter's program.
 pub(super) fn command(chapter: &Chapter) -> Command {
@@ -68,10 +68,9 @@ fn what_to_draw(chapter: &Chapter) -> Vec<Arg> {
 }
 
 /// What means nothing to a list.
-const BESIDE_LISTS: [&str; 24] = [
+const BESIDE_LISTS: [&str; 23] = [
     "window",
     "verbose",
-    "format",
     "all",
     "frame",
     "set",
@@ -100,7 +99,8 @@ fn knobs(chapter: &Chapter) -> [Arg; 2] {
     let is_hidden = chapter.variants.iter().all(|variant| variant.knobs.is_empty());
     [
         switch("knobs", "List the knobs of the variant: what can be turned, and what to watch")
-            .conflicts_with_all(BESIDE_LISTS),
+            .conflicts_with_all(BESIDE_LISTS)
+            .conflicts_with("format"),
         option("set", "NAME=VALUE", "Set a knob, such as tilt=60; can be given several times")
             .value_parser(parse_setting)
             .action(ArgAction::Append)
@@ -212,7 +212,7 @@ fn what_to_tell() -> [Arg; 4] {
             .value_parser(parse_pixel)
             .conflicts_with_all(["all", "animate", "compare", "zoom", "out"]),
         switch("verbose", "Print also what came near that pixel and did not reach it").short('v'),
-        option("format", "FORM", "Print it as text, or as json for programs")
+        option("format", "FORM", "Print it, or the list, as text, or as json for programs")
             .value_parser(["text", "json"])
             .hide_possible_values(true),
     ]
@@ -260,33 +260,4 @@ fn size_help(chapter: &Chapter) -> String {
         [] => help.to_owned(),
         names => format!("{help}, but not {}", names.join(", ")),
     }
-}
-
-/// Variants, a line each: name, then what to look for.
-pub(super) fn list(variants: &[Variant]) -> String {
-    let width = variants.iter().map(|variant| variant.name.len()).max().unwrap_or(0);
-    let line = |variant: &Variant| {
-        let mistake = match variant.mistake {
-            Mistake::No => String::new(),
-            Mistake::RemediedBy(remedy) => format!(" [mistake; remedy: {remedy}]"),
-            Mistake::WithoutRemedy => " [mistake]".to_owned(),
-        };
-        let source = if variant.source.is_empty() { String::new() } else { format!(" ({})", variant.source) };
-        let in_pixels = if variant.in_pixels { " [in pixels: --size does not scale it]" } else { "" };
-        format!("  {:width$}  {}{source}{mistake}{in_pixels}\n", variant.name, variant.look)
-    };
-    variants.iter().map(line).collect()
-}
-
-/// The knobs of a variant, two lines each.
-pub(super) fn knob_list(variant: &Variant) -> String {
-    if variant.knobs.is_empty() {
-        return format!("'{}' has no knobs", variant.name);
-    }
-    let line = |knob: &Knob| {
-        let Knob { name, watch, .. } = knob;
-        format!("\n  {name} = {}   ({})\n      {watch}", knob.shown(knob.default()), knob.range())
-    };
-    let lines: String = variant.knobs.iter().map(line).collect();
-    format!("Knobs of '{}', --set NAME=VALUE:{lines}", variant.name)
 }

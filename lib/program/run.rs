@@ -11,7 +11,7 @@ use super::animation::encode;
 use super::arguments::{Format, Request};
 use super::choice::{check_model_options, find, hints, other, unnamed};
 use super::failure::Failure;
-use super::options::{knob_list, list};
+use super::lists::{knob_list, list, list_json};
 use super::output::{Destination, note, say};
 use super::scenes::{check_inside, load, name_of, pair_of, scene_of, sweepable, unseen};
 use super::show::Screen;
@@ -77,6 +77,9 @@ fn run(chapter: &Chapter, request: &Request) -> Result<(), Failure> {
             Some(name) => std::slice::from_ref(find(chapter, name)?),
             None => chapter.variants,
         };
+        if request.format == Format::Json {
+            return say(&list_json(chapter, variants));
+        }
         let list = list(variants);
         let wrapped = terminal_width().map(|width| wrap_columns(&list, width));
         return say(wrapped.as_deref().unwrap_or(&list).trim_end());

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
 use crate::chapters::CHAPTERS;
-use rasterbook::figure::Variant;
+use rasterbook::figure::{Chapter, Mistake, Variant};
 use rasterbook::program::PROGRAMS;
 
 /// An empty folder of its own for one test.
@@ -137,6 +137,27 @@ fn all_variants_and_their_list() {
             assert_eq!(line.split_whitespace().next(), Some(variant.name));
             assert!(line.contains(variant.look));
         }
+        assert_list(chapter, &run(&["--list", "--format", "json"]));
+    }
+}
+
+/// The list for programs says what the chapter's table says.
+fn assert_list(chapter: &Chapter, list: &str) {
+    let list: serde_json::Value = serde_json::from_str(list).expect("JSON");
+    assert_eq!(list["program"], chapter.name);
+    assert_eq!(list["variants"].as_array().map(Vec::len), Some(chapter.variants.len()));
+    for (said, variant) in list["variants"].as_array().into_iter().flatten().zip(chapter.variants) {
+        assert_eq!([&said["name"], &said["look"]], [variant.name, variant.look]);
+        assert_eq!(said["size"], serde_json::json!([variant.size.0, variant.size.1]));
+        assert_eq!(said["animation"]["frames"].as_u64(), variant.animation.map(|it| it.frames.into()));
+        assert_eq!(said["mistake"], variant.mistake != Mistake::No);
+        let remedy = said["remedy"].as_str().map(|name| chapter.find(name).expect("of this chapter").name);
+        assert_eq!(
+            remedy.is_some(),
+            matches!(variant.mistake, Mistake::RemediedBy(name) if Some(name) == remedy)
+        );
+        let knobs = said["knobs"].as_array().expect("a list").iter().map(|knob| knob["name"].as_str());
+        assert!(knobs.eq(variant.knobs.iter().map(|knob| Some(knob.name))), "{said}");
     }
 }
 

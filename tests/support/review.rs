@@ -11,7 +11,7 @@ use base64::Engine as _;
 pub(crate) struct Entry {
     pub(crate) name: String,
     /// What to look for in the picture.
-    pub(crate) look: &'static str,
+    pub(crate) look: String,
     /// The command that reports a pixel of it, up to the coordinates; a comparison has none.
     pub(crate) inspect: Option<String>,
 }
@@ -61,7 +61,7 @@ fn section(folder: &Path, name: &str, entry: Option<&Entry>) -> String {
     }
     let _ = writeln!(html, ">\n<h2>{name}</h2>");
     if let Some(entry) = entry {
-        let _ = writeln!(html, "<p>{}</p>", escaped(entry.look));
+        let _ = writeln!(html, "<p>{}</p>", escaped(&entry.look));
     }
     for (kind, title) in [("expected", "accepted"), ("actual", "new")] {
         if let Ok(bytes) = file(&format!("{kind}.png")) {
