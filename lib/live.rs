@@ -579,6 +579,10 @@ mod tests {
                 .size(8, 8)
                 .animated(Animation { frames: 3, rate: 7 })
                 .knobs(&[Knob::whole("more", 0, [0, 1], "", "-")]),
+            Variant::with_pipeline("turned", |_| {}, "-").size(40, 30).knobs(&[
+                Knob::number("azimuth", 170.0, [-180.0, 180.0], "°", "-"),
+                Knob::number("elevation", 80.0, [-89.0, 89.0], "°", "-"),
+            ]),
         ],
     };
 
@@ -663,6 +667,28 @@ mod tests {
     }
 
     #[test]
+    fn a_model_is_turned_by_the_pointer() {
+        let angles = |events: &[Event]| {
+            let turned = play(play(live(), &[Event::Variant(3), Event::Press((20, 15))]), events);
+            (turned.is_held(), ["azimuth", "elevation"].map(|name| turned.scene.knobs.number(name)))
+        };
+        // Half a degree a pixel, and the eye goes the other way: round and round, but up no farther than its range.
+        assert_eq!(angles(&[Event::Drag((22, 16))]), (true, [169.0, 79.5]));
+        assert_eq!(angles(&[Event::Drag((0, 0))]), (true, [180.0 - 360.0, 87.5]));
+        assert_eq!(angles(&[Event::Drag((0, 15)), Event::Press((39, 15)), Event::Drag((0, 0))]).1[0], -160.5);
+        assert_eq!(
+            angles(&[Event::Drag((20, 0)), Event::Release, Event::Drag((0, 29))]),
+            (false, [170.0, 87.5])
+        );
+        assert_eq!(angles(&[Event::Drag((20, 0)), Event::Press((20, 29)), Event::Drag((20, 0))]).1[1], 89.0);
+    }
+
+    #[test]
+    fn a_pixel_is_told_in_words() {
+        assert_eq!(Live::told((60, 120), Color::rgb(0, 255, 10)), "(60, 120) #00ff0a");
+    }
+
+    #[test]
     fn views_are_the_remedy_the_difference_and_the_overdraw() {
         let shown = |view| play(live(), &[Event::Turn(10), Event::Show(view)]);
         assert_eq!(seen(&shown(View::Remedy).picture()), (120, Some((4, 6))), "with the same knobs");
@@ -682,7 +708,7 @@ mod tests {
     fn variants_take_over_knobs_and_an_asked_size() {
         let other = play(live(), &[Event::Turn(10), Event::NextVariant(1)]);
         assert_eq!(seen(&other.picture()), (120, Some((4, 6))));
-        assert_eq!(play(other, &[Event::NextVariant(-2)]).scene().variant.name, "moving");
+        assert_eq!(play(other, &[Event::NextVariant(-3)]).scene().variant.name, "moving");
         assert_eq!(play(live(), &[Event::Variant(7)]).scene().variant.name, "wrong", "there is no eighth");
         let mut large = live();
         large.scene.size = (80, 60);

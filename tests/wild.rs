@@ -9,6 +9,7 @@ use std::process::{Command, Output};
 
 use base64::Engine;
 use drawing::{draw, stderr};
+use rayon::prelude::*;
 
 fn folder(name: &str) -> PathBuf {
     drawing::folder("wild", name)
@@ -214,11 +215,11 @@ fn fault(name: &str, wild: [&str; 2], plain: [&str; 2], told: &[&str]) -> Option
 fn the_wild_is_drawn_like_the_plain() {
     let dent = "v -2 -2 0\nv 0 -1 0\nv 2 -2 0\nv 0 2 0\n";
     let filled = |text: &str| text.replace("{s}", SQUARE).replace("{d}", dent);
-    let of_texts = TEXTS.iter().filter_map(|&(name, wild, plain, told)| {
+    let of_texts = TEXTS.par_iter().filter_map(|&(name, wild, plain, told)| {
         fault(name, [&filled(wild), ""], [&filled(plain), ""], told)
     });
     let whole = |head: &str| format!("{head}{SQUARE}{CORNERS}{TEXTURED}");
-    let of_libraries = LIBRARIES.iter().filter_map(|&(name, head, wild, plain, told)| {
+    let of_libraries = LIBRARIES.par_iter().filter_map(|&(name, head, wild, plain, told)| {
         fault(name, [&whole(head), wild], [&whole(HEAD), plain], told)
     });
     let faults: Vec<String> = of_texts.chain(of_libraries).collect();

@@ -55,6 +55,15 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_line_names_every_color_and_its_count() {
+        let line = heat_legend();
+        for (count, (_, name)) in HEAT.iter().enumerate() {
+            assert!(line.contains(&format!("{name} {count}")), "{line}");
+        }
+        assert!(line.ends_with(&format!("{}+", HEAT.len() - 1)), "the last one stands for more, too: {line}");
+    }
+
+    #[test]
     fn every_color_is_below_a_picture_of_any_width() {
         for (size, expected) in [
             ((640, 480), (640, 480 + 22)),

@@ -530,6 +530,29 @@ mod tests {
     }
 
     #[test]
+    fn a_model_has_so_many_libraries_and_each_has_a_name() {
+        let statements: Vec<(u32, Vec<u8>)> =
+            (1..=300).map(|line| (line, format!("nowhere{line}.mtl").into_bytes())).collect();
+        let mut warnings = Warnings::default();
+        Materials::load(Path::new("a.obj"), &statements, &mut warnings);
+        assert_eq!(warnings.len(), MAX_LIBRARIES + 1, "each that is missing, and that there are more");
+        assert_eq!(warnings.last().expect("some"), "a.obj: line 257: more libraries than are read");
+        let mut warnings = Warnings::default();
+        Materials::load(Path::new("a.obj"), &[(7, vec![])], &mut warnings);
+        assert_eq!(warnings[0], "a.obj: line 7: mtllib without a name");
+    }
+
+    #[test]
+    fn tinted_copies_count_among_all_textures() {
+        let picture = Texture::new(2, 2, vec![Color::rgb(100, 200, 40); 4]);
+        let tinted = |texels| Pictures { texels, ..Pictures::default() }.tinted(&picture, [0.5, 1.0, 9.0]);
+        let texture = tinted(MAX_TEXELS - 4).expect("there is room for four");
+        assert_eq!(texture.texel(1, 1), [50.0, 200.0, 255.0]);
+        let reason = tinted(MAX_TEXELS - 3).expect_err("one too many");
+        assert_eq!(reason, format!("all textures of a model may have {MAX_TEXELS} pixels"));
+    }
+
+    #[test]
     fn options_before_a_name() {
         for (text, name, neutral) in [
             ("a b.png", "a b.png", true),

@@ -95,3 +95,19 @@ macro_rules! with_each {
 }
 #[cfg(test)]
 pub(super) use with_each;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tiled::Tiled;
+
+    #[test]
+    fn each_has_a_name_and_the_best_is_taken() {
+        let names: Vec<String> = Instructions::available().map(|it| it.to_string()).collect();
+        assert_eq!(names[0], Instructions::baseline().to_string());
+        assert_eq!(names.last(), Some(&Tiled::new().instructions().to_string()));
+        assert!(names.len() < 2 || names[1] == "avx2" && names[0] != "avx2", "{names:?}");
+        let slow = Tiled::new().with_instructions(Instructions::baseline());
+        assert_eq!(slow.instructions().to_string(), names[0]);
+    }
+}

@@ -2,7 +2,7 @@
 
 use crate::chapters::{CHAPTERS, variant};
 use rasterbook::figure::{DrawOptions, RasterizerChoice, Variant};
-use rasterbook::inspect::{History, histories, history};
+use rasterbook::inspect::{History, Steps, histories, history};
 use rasterbook::{Color, Framebuffer, Pixel};
 use rayon::prelude::*;
 use serde_json::Value;
@@ -45,6 +45,38 @@ fn what_is_reported_is_what_stands_in_the_picture_and_no_event_is_unknown() {
             }
         }
     });
+}
+
+/// What the outline of a clipped triangle is drawn in.
+const OUTLINE: Color = Color::rgb(255, 220, 60);
+/// The lines between enlarged pixels: the finished picture has them, and no step.
+const GRID: Color = Color::gray(80);
+
+#[test]
+fn steps_lead_to_the_picture() {
+    let with_outlines: usize = CHAPTERS
+        .par_iter()
+        .flat_map_iter(|(chapter, _)| chapter.variants.iter().map(move |variant| (chapter, variant)))
+        .filter(|(_, variant)| !OTHER_BUFFER.contains(&variant.name))
+        .map(|(chapter, variant)| {
+            let subject = variant.subject().expect("assets");
+            let own = variant.options(subject.as_ref());
+            // Small, where that shows the same.
+            let size = if variant.in_pixels { variant.size } else { (160, 120) };
+            let options = DrawOptions { size, ..own };
+            let steps = Steps::new(variant, &options).expect("a small picture");
+            // After the last step the finished picture stays for a second.
+            let count = steps.animation().frames - steps.animation().rate;
+            let last = steps.frame(count - 1);
+            let picture = variant.draw(&options);
+            let both = last.rows_from_top().flatten().zip(picture.rows_from_top().flatten());
+            let differing = both.filter(|(step, end)| step != end && **end != GRID).count();
+            assert_eq!(differing, 0, "{} {}", chapter.name, variant.name);
+            let has_outline = |number| steps.frame(number).rows_from_top().flatten().any(|&c| c == OUTLINE);
+            usize::from(chapter.name == "ch09_pipeline" && (0..count).any(has_outline))
+        })
+        .sum();
+    assert!(with_outlines > 0, "triangles are clipped in chapter 9");
 }
 
 #[test]
