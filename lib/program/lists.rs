@@ -53,8 +53,8 @@ fn variant_json(variant: &Variant) -> String {
     };
     let animation = |Animation { frames, rate }| format!("{{\"frames\": {frames}, \"rate\": {rate}}}");
     let fields = [
-        ("name", text(Some(variant.name))),
-        ("look", text(Some(variant.look))),
+        ("name", text_json(variant.name)),
+        ("look", text_json(variant.look)),
         ("source", text((!variant.source.is_empty()).then_some(variant.source))),
         ("size", format!("[{}, {}]", variant.size.0, variant.size.1)),
         ("scales", (!variant.in_pixels).to_string()),

@@ -1,7 +1,6 @@
 //! Everything that is tested with the chapters' own tables. One program, since each contains all chapters.
 
 mod artefacts;
-#[path = "../support/chapters.rs"]
 mod chapters;
 mod command_line;
 mod docs;

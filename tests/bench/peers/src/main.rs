@@ -6,7 +6,8 @@
 //! ```
 //!
 //! Options: `--quick` (few rounds), `--rounds N`, `--out FOLDER` (of the images; `target/bench` unless said otherwise),
-//! `--other PROGRAM` (another build of this program, whose rasterizers take part in the five scenes), and words: only renderers and scenes with one of them in their names. The reference, llvmpipe, always takes part.
+//! `--other PROGRAM` (another build of this program, whose rasterizers take part in the five scenes), and words: only
+//! renderers and scenes with one of them in their names. The reference, llvmpipe, always takes part.
 //!
 //! First the pictures are compared with the reference's; if one is not the same, nothing is measured.
 

@@ -1,6 +1,6 @@
 //! The chapters' own tables, and the programs built from them.
 
-#![allow(dead_code, reason = "each test uses a part of it, and the chapters' `main`s are not called")]
+#![allow(dead_code, reason = "the chapters' `main`s are not called")]
 
 use rasterbook::figure::{Chapter, Variant};
 
