@@ -682,6 +682,22 @@ fn knobs_that_there_are_not_are_refused_with_those_that_there_are() {
 }
 
 #[test]
+fn what_does_not_fit_the_variant_is_refused() {
+    let folder = folder("unfit");
+    let cases: [(&[&str], &str); 3] = [
+        (&["turntable", "--model", "a.obj", "--as-is"], "--as-is means nothing to it"),
+        (&["still-life", "--compare", "lit"], "'still-life' and 'lit' differ in size: give --size"),
+        (&["lit", "--compare", "flat", "--size", "8000x30"], "three such pictures are too wide"),
+    ];
+    for (arguments, reason) in cases {
+        let output = last(&folder, arguments);
+        let said = text(&output.stderr);
+        assert!(output.status.code() == Some(2) && said.contains(reason), "{arguments:?}: {said}");
+    }
+    assert!(files(&folder).is_empty());
+}
+
+#[test]
 fn a_model_that_is_not_seen_is_told_of() {
     let folder = folder("unseen");
     let model = |name: &str, text: &str| std::fs::write(folder.join(name), text).expect("written");
