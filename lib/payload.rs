@@ -218,6 +218,18 @@ mod tests {
         assert_eq!(values, [(2, 3.0)]);
     }
 
+    #[test]
+    fn an_edge_without_height_has_the_value_at_its_start() {
+        // Row 2 belongs to the lower half, too, though that begins and ends at 2.5.
+        let split = split([dvec2(0.0, 2.5), dvec2(4.0, 2.5), dvec2(2.0, 6.0)]).expect("an area");
+        let [lower, _] = split.attach([1.0, 2.0, 3.0], |a, b, t| (b - a) * t + a);
+        let mut values = Vec::new();
+        split
+            .lower
+            .step(&lower, Walk::default(), Rect::sized(8, 8), |span, ends| values.push((span.y, ends)));
+        assert_eq!(values, [(2, [1.0, 1.0])]);
+    }
+
     proptest! {
         #[test]
         fn a_payload_clamped_everywhere_stays_between_its_ends(
