@@ -386,6 +386,14 @@ mod tests {
         let (middle, size) = model.bounding_sphere();
         assert_eq!(middle, dvec3(13.0, 4.0, 1.0));
         assert!((size - dvec3(3.0, 4.0, 1.0).length()).abs() < 1e-12);
+        // Around the origin, and a small one beside it.
+        for (corners, size) in [
+            ("v -1 -1 0\nv 1 -1 0\nv 0 1 0\n", 2.0_f64.sqrt()),
+            ("v 1.5 1.5 -1.5\nv 2 1.5 -1.5\nv 1.5 2 -2\n", 0.25 * 3.0_f64.sqrt()),
+        ] {
+            let (model, _) = parse(&format!("{corners}f 1 2 3\n")).expect("a triangle");
+            assert!((model.bounding_sphere().1 - size).abs() < 1e-12, "{corners}");
+        }
         let (center, radius) = (dvec3(0.0, 0.0, 4.0), 2.0);
         let fitted = model.fitted(center, radius);
         let first = fitted.parts[0].mesh.vertices()[0].position;
@@ -394,6 +402,7 @@ mod tests {
         let (point, _) = parse("v 1 1 1\nf 1 1 1\n").expect("a point, three times");
         assert!(point.fitted(DVec3::ZERO, 1.0).bounds().0.is_finite());
         let (huge, _) = parse("v 1e308 0 0\nv -1e308 0 0\nv 0 1e308 0\nf 1 2 3\n").expect("a large triangle");
+        assert!(huge.bounding_sphere().1.is_finite());
         assert!(huge.fitted(DVec3::ZERO, 1.0).bounds().1.is_finite());
         let (tiny, _) = parse("v 1e-310 0 0\nv 0 0 0\nv 0 1e-310 0\nf 1 2 3\n").expect("a tiny triangle");
         assert!(tiny.fitted(DVec3::ZERO, 1.0).bounds().1.is_finite());
