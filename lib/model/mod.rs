@@ -301,6 +301,15 @@ mod tests {
     }
 
     #[test]
+    fn corners_that_are_the_same_are_one_vertex() {
+        // The parser makes two meshes of this; the last face has the corners of the second one again.
+        let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0.5 0\nvn 0 0 1\nvn 1 0 0\n\
+            f 1/1 2/1 3/1\nf 1//1 2//1 3//1\nf 1//2 2//2 3//2\nf 1//1 2//1 3//1\n";
+        let (model, _) = parse(text).expect("four faces");
+        assert_eq!((model.parts.len(), model.parts[0].mesh.vertices().len()), (1, 9));
+    }
+
+    #[test]
     fn normals_that_are_rounded_stay() {
         let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0.5774 0.8165\nf 1//1 2//1 3//1\n";
         let (model, _) = parse(text).expect("a triangle");
