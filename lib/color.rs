@@ -96,5 +96,14 @@ mod tests {
         assert_eq!(Color::rgb(1, 2, 255).channels(), [1, 2, 255]);
         assert_eq!(Color::truncated([254.999, -3.0, f64::NAN]), Color::rgb(254, 0, 0));
         assert_eq!(Color::truncated([1e30, 128.0, 0.5]), Color::rgb(255, 128, 0));
+        assert_eq!(Color::rgb(1, 2, 255).to_f64(), [1.0, 2.0, 255.0]);
+        assert_eq!(format!("{:?}", Color::rgb(1, 2, 255)), "(1, 2, 255)", "as messages say it");
+    }
+
+    #[test]
+    #[cfg(feature = "tiled")]
+    fn a_word_has_red_on_top() {
+        assert_eq!(Color::rgb(0x12, 0x34, 0x56).bits(), 0x0012_3456);
+        assert_eq!(Color::from_bits(0x0012_3456), Color::rgb(0x12, 0x34, 0x56));
     }
 }

@@ -154,3 +154,79 @@ pub(crate) fn load_texture_within(path: &Path, max_texels: u64) -> Result<(Textu
 pub fn decode_texture(bytes: &[u8], path: &Path) -> Result<(Texture, ImageFormat), FileError> {
     decode_within(bytes, path, MAX_TEXELS)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    /// Writes a file for one test, which removes it.
+    fn written(name: &str, content: &[u8]) -> PathBuf {
+        let path = std::env::temp_dir().join(format!("rasterbook.{}.{name}", std::process::id()));
+        fs::write(&path, content).expect("a place for temporary files");
+        path
+    }
+
+    fn removed(path: &Path) {
+        fs::remove_file(path).expect("just written");
+    }
+
+    #[test]
+    fn a_file_is_read_up_to_a_limit() {
+        let path = written("limit.txt", b"12345");
+        assert_eq!(read_file(&path).expect("a small file"), b"12345");
+        assert_eq!(read_file_within(&path, 5).expect("as large as it may be"), b"12345");
+        let refused = |limit| read_file_within(&path, limit).expect_err("too large").to_string();
+        let most = "files of up to 268435456 (256 MiB) are read";
+        assert!(refused(4).ends_with(&format!("has 5 bytes; {most}, and 4 are left")), "{}", refused(4));
+        // A file with a hole, which takes no place on the disk.
+        let file = File::options().write(true).open(&path).expect("just written");
+        file.set_len(MAX_FILE_BYTES + 1).expect("a hole");
+        let told = refused(MAX_FILE_BYTES);
+        assert!(told.ends_with(&format!("has 268435457 bytes; {most}")), "{told}");
+        file.set_len(0).expect("empty");
+        assert_eq!(read_file(&path).expect("an empty file"), b"");
+        removed(&path);
+    }
+
+    #[test]
+    fn what_is_no_file_is_named() {
+        let folder = read_file(&std::env::temp_dir()).expect_err("a folder");
+        assert!(folder.to_string().ends_with(": is a folder"), "{folder}");
+        assert!(folder.source().is_none(), "found out here");
+        let missing = read_file("nowhere/a.obj".as_ref()).expect_err("not there");
+        assert!(missing.to_string().starts_with("nowhere/a.obj: "), "{missing}");
+        let cause = missing.source().and_then(|cause| cause.downcast_ref::<std::io::Error>());
+        assert_eq!(cause.map(std::io::Error::kind), Some(std::io::ErrorKind::NotFound));
+    }
+
+    #[test]
+    fn nothing_commands_the_terminal() {
+        assert_eq!(shown("café\u{1b}[31m\n"), "café\\u{1b}[31m\\n");
+        assert_eq!(shown("a\u{202e}b\u{2066}c\u{200f}"), "a\\u{202e}b\\u{2066}c\\u{200f}");
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn a_path_that_is_no_text_can_be_recognized() {
+        use std::os::unix::ffi::OsStrExt;
+        let path = Path::new(std::ffi::OsStr::from_bytes(b"a/caf\xe9\n.obj"));
+        assert_eq!(shown_path(path), "a/caf\\xe9\\n.obj");
+    }
+
+    #[test]
+    fn the_content_says_what_an_image_is() {
+        let mut png = std::io::Cursor::new(Vec::new());
+        image::RgbImage::new(2, 1).write_to(&mut png, ImageFormat::Png).expect("two pixels");
+        for (name, wrong) in [("a.png", false), ("a.bmp", true), ("a.thing", false)] {
+            let path = written(name, png.get_ref());
+            let (texture, warnings) = load_texture(&path).expect("an image");
+            assert_eq!((texture.width(), texture.height()), (2, 1));
+            let told = wrong.then(|| format!("{}: is a Png file, whatever its name says", path.display()));
+            assert_eq!(warnings, Vec::from_iter(told));
+            removed(&path);
+        }
+        let (texture, format) = decode_texture(png.get_ref(), "a.bmp".as_ref()).expect("an image");
+        assert_eq!((texture.width(), format), (2, ImageFormat::Png));
+    }
+}

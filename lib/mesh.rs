@@ -154,5 +154,20 @@ mod tests {
         let error = Mesh::indexed(vec![0; 4], vec![0, 1, 4]).err();
         assert_eq!(error, Some(MeshError::IndexOutOfRange { index: 4, vertices: 4 }));
         assert!(Mesh::<u8>::unindexed(vec![]).is_ok_and(|empty| empty.triangles().next().is_none()));
+        let messages =
+            [MeshError::NotTriangles { count: 4 }, MeshError::IndexOutOfRange { index: 4, vertices: 3 }]
+                .map(|error| error.to_string());
+        assert_eq!(messages, ["4 vertices do not make whole triangles", "index 4, but there are 3 vertices"]);
+    }
+
+    #[test]
+    fn the_same_triangles_in_other_meshes() {
+        let square = Mesh::indexed(vec!['a', 'b', 'c', 'd'], vec![0, 1, 2, 0, 2, 3]).expect("two triangles");
+        let capitals = square.map(char::to_ascii_uppercase);
+        assert_eq!(capitals.vertices(), ['A', 'B', 'C', 'D']);
+        assert_eq!(capitals.triangles().collect::<Vec<_>>(), [[0, 1, 2], [0, 2, 3]], "vertices stay shared");
+        let unshared = square.to_unindexed();
+        assert_eq!(unshared.vertices(), ['a', 'b', 'c', 'a', 'c', 'd']);
+        assert_eq!(unshared.triangle(1), [3, 4, 5]);
     }
 }

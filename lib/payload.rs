@@ -199,12 +199,35 @@ impl Span {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scanline::split;
-    use glam::DVec2;
+    use crate::scanline::{spans, split};
+    use glam::{DVec2, dvec2};
     use proptest::prelude::*;
 
     fn point() -> impl Strategy<Value = DVec2> {
         (-20.0..60.0, -20.0..60.0).prop_map(DVec2::from)
+    }
+
+    #[test]
+    fn a_row_of_one_pixel_has_the_value_at_its_start() {
+        // The lowest row of a triangle that stands on a vertex: from 3 to 5 over no distance.
+        let triangle = [dvec2(2.0, 0.0), dvec2(0.0, 2.0), dvec2(4.0, 2.0)];
+        let mut values = Vec::new();
+        spans(triangle, EdgeWalk::Clamped, Rect::sized(8, 1), |span| {
+            span.step(3.0, 5.0, StepClamp::Edges, |x, value| values.push((x, value)));
+        });
+        assert_eq!(values, [(2, 3.0)]);
+    }
+
+    #[test]
+    fn an_edge_without_height_has_the_value_at_its_start() {
+        // Row 2 belongs to the lower half, too, though that begins and ends at 2.5.
+        let split = split([dvec2(0.0, 2.5), dvec2(4.0, 2.5), dvec2(2.0, 6.0)]).expect("an area");
+        let [lower, _] = split.attach([1.0, 2.0, 3.0], |a, b, t| (b - a) * t + a);
+        let mut values = Vec::new();
+        split
+            .lower
+            .step(&lower, Walk::default(), Rect::sized(8, 8), |span, ends| values.push((span.y, ends)));
+        assert_eq!(values, [(2, [1.0, 1.0])]);
     }
 
     proptest! {

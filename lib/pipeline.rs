@@ -90,3 +90,14 @@ pub fn draw<S: Shader<N>, Z: Rasterizer, P: Probe + ?Sized, const N: usize>(
 fn all_three<T>([a, b, c]: [Option<T>; 3]) -> Option<[T; 3]> {
     Some([a?, b?, c?])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn positions_of_a_model_are_told_if_all_three_are_known() {
+        assert_eq!(all_three([Some(1), Some(2), Some(3)]), Some([1, 2, 3]));
+        assert_eq!(all_three([Some(1), None, Some(3)]), None);
+    }
+}

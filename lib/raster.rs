@@ -125,3 +125,37 @@ fn draw_triangle<S: Shader<N>, P: Probe + ?Sized, const N: usize>(
     });
 }
 // ANCHOR_END: draw_triangle
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::clip::ClipVertex;
+    use crate::color::Color;
+    use crate::cull::CullMode;
+    use crate::probe::Silent;
+    use crate::shader;
+    use glam::{DVec3, dvec3};
+
+    /// Whether something is drawn of a triangle in NDC, where all of those that are drawn have the middle pixel.
+    fn is_drawn(positions: [DVec3; 3], cull: CullMode) -> bool {
+        let white = shader::from_fn(
+            |ndc: &DVec3| ClipVertex { position: ndc.extend(1.0), varyings: [] },
+            |_: [f64; 0]| [255.0; 3],
+        );
+        let triangle = positions.map(|position| NdcVertex { position, w: 1.0, varyings: [] });
+        let (state, mut target) = (RenderState { cull, ..RenderState::default() }, Target::new(16, 16));
+        state.clear(&mut target);
+        Scanline.draw([triangle].into_iter(), &state, &white, &mut target, &Silent);
+        target.color.get(8, 8) == Some(Color::WHITE)
+    }
+
+    #[test]
+    fn fronts_backs_and_what_has_no_area() {
+        let [a, b, c] = [dvec3(-1.0, -1.0, 0.0), dvec3(1.0, -1.0, 0.0), dvec3(0.0, 1.0, 0.0)];
+        let (front, back, line) = ([a, b, c], [a, c, b], [a, a, c]);
+        let drawn = |cull| [front, back, line].map(|triangle| is_drawn(triangle, cull));
+        assert_eq!(drawn(CullMode::None), [true, true, false]);
+        assert_eq!(drawn(CullMode::Back), [true, false, false]);
+        assert_eq!(drawn(CullMode::Front), [false, true, false]);
+    }
+}

@@ -87,6 +87,21 @@ mod tests {
     }
 
     #[test]
+    fn a_picture_replaces_the_file_before_and_nothing_else_is_left() {
+        let top = std::env::temp_dir().join(format!("rasterbook.{}.save", std::process::id()));
+        let (folder, mut picture) = (top.join("new"), Framebuffer::new(3, 2));
+        let path = folder.join("picture.png");
+        for color in [crate::Color::RED, crate::Color::GREEN] {
+            picture.clear(color);
+            picture.save(&path).expect("a place for temporary files");
+            let read = image::open(&path).expect("just written").to_rgb8();
+            assert_eq!((read.dimensions(), read.get_pixel(0, 0).0), ((3, 2), color.channels()));
+        }
+        assert_eq!(fs::read_dir(&folder).expect("made").count(), 1);
+        fs::remove_dir_all(top).expect("made");
+    }
+
+    #[test]
     fn unknown_formats_are_refused() {
         let error = Framebuffer::new(1, 1).save("picture.doc").expect_err("no picture format");
         assert_eq!(error.to_string(), "picture.doc: names no format that is written: .png .bmp .tga .ppm");

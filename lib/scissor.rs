@@ -55,3 +55,21 @@ impl Scissor {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_part_has_the_same_observer() {
+        #[derive(Debug)]
+        struct Nobody;
+        impl Observer for Nobody {}
+
+        let mut framebuffer = Framebuffer::new(8, 6);
+        framebuffer.set_observer(Some(std::sync::Arc::new(Nobody)));
+        let part = framebuffer.scissor().within(Rect { left: 2, bottom: 3, right: 99, top: 4 });
+        assert_eq!(part.rect, Rect { left: 2, bottom: 3, right: 8, top: 4 });
+        assert!(part.observer.is_some());
+    }
+}

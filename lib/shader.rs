@@ -201,6 +201,7 @@ impl<R: Real> Shaded<R> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::{dvec3, dvec4};
 
     #[test]
     fn discarding() {
@@ -209,5 +210,21 @@ mod tests {
         assert!(!shaded.discard(1.0_f64.is_less(2.0)).keep);
         assert!(shaded.discard(2.0_f64.is_less(1.0)).keep);
         assert!(!shaded.discard(true).discard(false).keep, "what is discarded stays so");
+    }
+
+    #[test]
+    fn a_shader_of_two_functions() {
+        let shader = from_fn(
+            |view: &DVec3| ClipVertex { position: view.extend(view.z), varyings: [view.y] },
+            |[height]: [f64; 1]| [height * 255.0, 0.0, 1.0],
+        );
+        let vertex = shader.vertex(&dvec3(1.0, 0.5, 2.0));
+        assert_eq!(vertex, ClipVertex { position: dvec4(1.0, 0.5, 2.0, 2.0), varyings: [0.5] });
+        assert_eq!(shader.position(&DVec3::ONE), None, "nothing is said of the space of the model");
+        let shaded = Shaded::opaque([127.5, 0.0, 1.0]);
+        assert_eq!(shader.fragment([0.5]), shaded);
+        let derivatives = Derivatives { dx: [9.0], dy: [9.0] };
+        assert_eq!(shader.fragment_with_derivatives([0.5], derivatives), shaded, "it does not ask for them");
+        assert_eq!(format!("{shader:?}"), "a shader made of two functions");
     }
 }

@@ -99,3 +99,17 @@ impl RenderState {
         self.viewport.unwrap_or_else(|| Viewport::whole(rect))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn clearing_gives_both_planes_their_value() {
+        let state = RenderState { clear_color: Color::BLUE, clear_depth: 0.25, ..RenderState::default() };
+        let mut target = Target::<f32>::sized(2, 1);
+        state.clear(&mut target);
+        assert_eq!(target.color.get(1, 0), Some(Color::BLUE));
+        assert_eq!(target.depth.get(1, 0), Some(0.25));
+    }
+}

@@ -106,3 +106,33 @@ impl Target {
     }
     // ANCHOR_END: fill
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::dvec2;
+
+    #[test]
+    #[should_panic(expected = "a target of (4, 3) colors and (4, 2) depths")]
+    fn fewer_depths_than_colors_are_refused() {
+        Target { color: Framebuffer::new(4, 3), depth: DepthBuffer::<f64>::new(4, 2) }.assert_depths();
+    }
+
+    #[test]
+    fn what_is_behind_is_not_filled() {
+        let mut target = Target::new(8, 8);
+        target.clear(Color::BLACK, 1.0);
+        for (z, value) in [(0.25, 1.0), (0.75, 0.0)] {
+            let triangle = [dvec2(0.0, 0.0), dvec2(7.0, 0.0), dvec2(0.0, 7.0)].map(|position| {
+                let projected = Projected { w: 1.0, values: [value] };
+                ScreenVertex { position, varyings: (projected, z) }
+            });
+            target.fill(triangle, |[value]| if value > 0.5 { Color::RED } else { Color::GREEN });
+        }
+        assert_eq!(
+            [(1, 1), (7, 7)].map(|(x, y)| target.color.get(x, y)),
+            [Some(Color::RED), Some(Color::BLACK)]
+        );
+        assert_eq!(target.depth.get(1, 1), Some(0.25));
+    }
+}

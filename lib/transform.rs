@@ -377,6 +377,13 @@ mod tests {
     }
 
     #[test]
+    fn without_perspective_distance_changes_nothing() {
+        for point in [dvec3(3.0, -2.0, 5.0), dvec3(3.0, -2.0, 50.0)] {
+            assert_eq!(perspective_divide(orthographic(point)), point);
+        }
+    }
+
+    #[test]
     fn straight_lines_stay_straight() {
         let [a, b] = [dvec3(-3.0, 1.0, 2.0), dvec3(5.0, 4.0, 9.0)];
         let project = |p| perspective_divide(perspective(p, 1.0));
@@ -434,6 +441,25 @@ mod tests {
             let tiny = Viewport::fitting(Rect::sized(width, height), 4.0 / 3.0);
             assert!(tiny.width >= 1.0 && tiny.height >= 1.0 && tiny.x >= 0.0 && tiny.y >= 0.0, "{tiny:?}");
         }
+    }
+
+    #[test]
+    fn a_viewport_lies_where_its_rectangle_does() {
+        let rect = Rect { left: 10, bottom: 20, right: 40, top: 100 };
+        assert_eq!(Viewport::whole(rect), Viewport { x: 10.0, y: 20.0, width: 30.0, height: 80.0 });
+        // Of the 65 rows that are left 32 are below.
+        let low = Viewport::fitting(rect, 2.0);
+        assert_eq!(low, Viewport { x: 10.0, y: 52.0, width: 30.0, height: 15.0 });
+        let narrow = Viewport::fitting(Rect { left: 10, bottom: 20, right: 90, top: 50 }, 0.5);
+        assert_eq!(narrow, Viewport { x: 42.0, y: 20.0, width: 15.0, height: 30.0 });
+    }
+
+    #[test]
+    fn where_a_pixel_is_an_area_the_borders_are_the_outer_ones() {
+        let viewport = Viewport { x: 7.0, y: -3.0, width: 200.0, height: 100.0 };
+        assert_eq!(viewport.pixel_areas(dvec3(-1.0, 1.0, 0.0)), DVec2::new(7.0, 97.0));
+        assert_eq!(viewport.pixel_areas(dvec3(1.0, -1.0, 0.0)), DVec2::new(207.0, -3.0));
+        assert_eq!(viewport.pixel_areas(dvec3(0.25, -0.5, 0.0)), DVec2::new(132.0, 22.0));
     }
 
     fn apply(matrix: DMat4, point: DVec3) -> DVec3 {

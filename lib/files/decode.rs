@@ -237,5 +237,51 @@ mod tests {
                 || refused(&claim, MAX_TEXELS).contains("dimension")
         );
         assert!(refused(&tga(0), 3).contains("of which 3 are left"));
+        // 64 pixels a byte: what ends too early is not found out by the size that is claimed.
+        claim[12..16].copy_from_slice(&[41, 0, 64, 0]);
+        assert!(!refused(&claim, MAX_TEXELS).contains("claims"));
+        claim[12..16].copy_from_slice(&[41, 0, 65, 0]);
+        assert!(refused(&claim, MAX_TEXELS).contains("claims 41×65 pixels"));
+    }
+
+    #[test]
+    fn how_many_pixels_are_in_a_byte() {
+        let mut bmp = [0; 34];
+        assert_eq!(max_pixels_a_byte(&bmp, ImageFormat::Bmp), 8, "a bit each");
+        assert_eq!(max_pixels_a_byte(&bmp, ImageFormat::Pnm), 8, "a bit each");
+        assert_eq!(max_pixels_a_byte(&bmp, ImageFormat::Tga), 128 / 2, "a run of 128 in two bytes");
+        assert_eq!(max_pixels_a_byte(&bmp, ImageFormat::Jpeg), 512, "a bit for a block of 8×8");
+        bmp[30] = 1;
+        let packed = [ImageFormat::Bmp, ImageFormat::Png].map(|format| max_pixels_a_byte(&bmp, format));
+        assert_eq!(packed, [8256; 2], "runs, or bytes that are packed again");
+    }
+
+    #[test]
+    fn the_largest_image_is_accepted() {
+        let side = Framebuffer::MAX_SIDE;
+        for size in [(side, 1), (1, side), (8192, 8192)] {
+            assert_eq!(check_size(size, MAX_TEXELS), Ok(()));
+        }
+        for size in [(side + 1, 1), (1, side + 1)] {
+            assert!(check_size(size, MAX_TEXELS).is_err_and(|told| told.contains("no side may have more")));
+        }
+        assert!(check_size((0, 5), MAX_TEXELS).is_err_and(|told| told == "has no pixels"));
+        assert!(check_size((8193, 8192), MAX_TEXELS).is_err_and(|told| told.contains("are allowed")));
+        assert_eq!(check_size((2, 2), 4), Ok(()), "as many as are left");
+        let largest = MAX_TEXELS * size_of::<[u16; 4]>() as u64;
+        assert_eq!((limits().max_alloc, limits().max_image_width), (Some(largest), Some(side)));
+    }
+
+    #[test]
+    fn a_png_file_is_turned_as_it_says() {
+        let mut bytes = Cursor::new(Vec::new());
+        RgbImage::new(2, 1).write_to(&mut bytes, ImageFormat::Png).expect("two pixels");
+        let mut bytes = bytes.into_inner();
+        // Behind the header: the EXIF data of a camera that was held upright.
+        let exif = b"II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0\x06\0\0\0";
+        let chunk = [b"\0\0\0\x16eXIf".as_slice(), exif, &0xB74A_E384_u32.to_be_bytes()].concat();
+        bytes.splice(33..33, chunk);
+        let (texture, _) = decode_within(&bytes, "a.png".as_ref(), 2).expect("a picture");
+        assert_eq!((texture.width(), texture.height()), (1, 2));
     }
 }

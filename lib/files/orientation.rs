@@ -54,14 +54,14 @@ pub(super) fn exif_of_png(bytes: &[u8]) -> Option<&[u8]> {
 mod tests {
     use super::*;
 
-    /// EXIF data with a tag before the one that counts.
+    /// EXIF data with tags before the one that counts.
     fn exif(is_little: bool, orientation: u16) -> Vec<u8> {
         let short = |number: u16| if is_little { number.to_le_bytes() } else { number.to_be_bytes() };
         let long = |number: u32| if is_little { number.to_le_bytes() } else { number.to_be_bytes() };
         let mut data = if is_little { b"II*\0".to_vec() } else { b"MM\0*".to_vec() };
         data.extend(long(8));
-        data.extend(short(2));
-        for (tag, value) in [(0x0100, 9), (0x0112, orientation)] {
+        data.extend(short(3));
+        for (tag, value) in [(0x0100, 9), (0x0101, 9), (0x0112, orientation)] {
             data.extend([short(tag), short(3)].concat());
             data.extend(long(1));
             data.extend([short(value), short(0)].concat());

@@ -498,6 +498,107 @@ mod tests {
         plain.finish()
     }
 
+    /// A folder of files for one test, which removes it.
+    struct Folder(PathBuf);
+
+    impl Folder {
+        fn new(name: &str, files: &[(&str, &[u8])]) -> Self {
+            let folder = std::env::temp_dir().join(format!("rasterbook.{}.{name}", std::process::id()));
+            for (name, content) in files {
+                let path = folder.join(name);
+                std::fs::create_dir_all(folder_of(&path)).expect("a place for temporary files");
+                std::fs::write(path, content).expect("a place for temporary files");
+            }
+            Self(folder)
+        }
+    }
+
+    impl Drop for Folder {
+        fn drop(&mut self) {
+            let _ = std::fs::remove_dir_all(&self.0);
+        }
+    }
+
+    /// An image file of two pixels.
+    fn picture() -> Vec<u8> {
+        let image = image::RgbImage::from_raw(2, 1, vec![10, 20, 30, 200, 100, 50]).expect("two pixels");
+        let mut bytes = std::io::Cursor::new(Vec::new());
+        image.write_to(&mut bytes, image::ImageFormat::Png).expect("written");
+        bytes.into_inner()
+    }
+
+    #[test]
+    fn a_color_tints_its_picture() {
+        let text = b"newmtl color\nKd 1 .5 0\nnewmtl picture\nmap_Kd a.png\n\
+            newmtl both\nKd 0.5 1 0\nmap_Kd a.png\nnewmtl dark\nKd 0.5\nmap_Kd a.png\n";
+        let folder = Folder::new("tint", &[("a.png", &picture()), ("a.mtl", text)]);
+        let mut warnings = Warnings::new();
+        let mut materials =
+            Materials::load(&folder.0.join("a.obj"), &[(1, b"a.mtl".to_vec())], &mut warnings);
+        let names = [b"color".as_slice(), b"picture", b"both", b"dark", b"neither"].map(<[u8]>::to_vec);
+        let textures = materials.textures(&names, &mut warnings);
+        let texels = |texture: &Texture| {
+            (0..texture.width() as usize).map(|column| texture.texel(column, 0)).collect::<Vec<_>>()
+        };
+        assert_eq!(
+            textures.iter().map(|texture| texture.as_ref().map(texels)).collect::<Vec<_>>(),
+            [
+                Some(vec![[255.0, 128.0, 0.0]]),
+                Some(vec![[10.0, 20.0, 30.0], [200.0, 100.0, 50.0]]),
+                Some(vec![[5.0, 20.0, 0.0], [100.0, 100.0, 0.0]]),
+                Some(vec![[5.0, 10.0, 15.0], [100.0, 50.0, 25.0]]),
+                None
+            ]
+        );
+        assert!(warnings.len() == 1 && warnings[0].contains("'neither' is in no library"), "{warnings:?}");
+        assert_eq!(materials.pictures.texels, 2 + 2 + 2, "decoded once, and two copies");
+    }
+
+    #[test]
+    fn textures_have_a_largest_size_together() {
+        let folder = Folder::new("texels", &[("a.png", &picture())]);
+        let path = folder.0.join("a.png");
+        let left = |texels| Pictures { texels: MAX_TEXELS - texels, ..Pictures::default() };
+        let two = left(2).load(&path, &mut Warnings::new()).expect("as many as are left");
+        let refused = left(1).load(&path, &mut Warnings::new()).expect_err("too many").to_string();
+        assert!(refused.contains("of which 1 are left"), "{refused}");
+        assert!(left(2).tinted(&two, [0.5; 3]).is_ok() && left(1).tinted(&two, [0.5; 3]).is_err());
+    }
+
+    #[test]
+    fn where_files_are_looked_for() {
+        let files: [(&str, &[u8]); 4] =
+            [("lib/a.png", b""), ("obj/a.png", b""), ("obj/sub/b.png", b""), ("lib/my a.mtl", b"")];
+        let folder = Folder::new("places", &files);
+        let [library, model] = ["lib", "obj"].map(|name| folder.0.join(name));
+        let found = |name: &[u8]| find_picture([&library, &model], name);
+        assert_eq!(found(b"a.png"), library.join("a.png"), "beside the library first");
+        assert_eq!(found(b"sub\\b.png # stone"), model.join("sub/b.png"));
+        assert_eq!(found(b"\"C:\\my textures/a.png\""), library.join("a.png"), "of another machine");
+        assert_eq!(found(b"sub/c.png"), library.join("sub/c.png"), "nowhere");
+        assert_eq!(library_names(&library, b"my a.mtl"), [library.join("my a.mtl")]);
+    }
+
+    #[test]
+    fn what_is_not_drawn_is_said_once() {
+        let text = "newmtl a\nd 1\nTr 0\nKe 0 0 0\nKs 0\nd 0.5\nKs 0 0 1\nTr\nillum 2\nillum 3\n";
+        assert_eq!(library(text).0[0].not_drawn, [b"d".as_slice(), b"Ks", b"Tr", b"illum"]);
+        let words = |count: u32| (0..count).map(|i| format!("w{i} 1\n")).collect::<String>();
+        let material = |text: String| library(&format!("newmtl a\n{text}")).0.remove(0);
+        assert_eq!(material(words(50)).not_drawn.len(), 40);
+        let told = |text: String| {
+            let (list, by_name) = (vec![material(text)], HashMap::new());
+            let (model, libraries) = ("a.obj".into(), vec!["a.mtl".into()]);
+            let materials = Materials { model, libraries, list, by_name, pictures: Pictures::default() };
+            let mut warnings = Warnings::new();
+            materials.warn_of_what_is_not_drawn([0, 0].iter(), &mut warnings);
+            warnings
+        };
+        assert_eq!(told(words(2)), ["a.mtl: only Kd and map_Kd are drawn; left out: w0, w1"]);
+        assert!(told(words(13))[0].ends_with(" w10, w11"), "twelve at most");
+        assert!(told(words(0)).is_empty());
+    }
+
     #[test]
     fn colors_with_fewer_numbers() {
         let color = |text: &str| library(&format!("newmtl a\n{text}\n")).0[0].color;
@@ -564,11 +665,15 @@ mod tests {
             ("-unknown.png", "-unknown.png", true),
             ("-s 1", "1", true),
             ("-clamp", "", false),
+            ("-o 0 1 a.png", "a.png", false),
+            ("-boost 0 -t 0 -cc off -blendu off -texres 512 -imfchan r a.png", "a.png", true),
         ] {
             let (options, found) = options_and_name(text.as_bytes());
             assert_eq!(readable(found), name, "{text}");
             assert_eq!(options.iter().all(MapOption::is_neutral), neutral, "{text}");
         }
+        let (_, warnings) = library("newmtl a\nmap_Kd -s 1 1 -o 0 1 -clamp on a.png\n");
+        assert_eq!(warnings, ["line 2: options of map_Kd that are not drawn: -o 0 1, -clamp on"]);
     }
 
     #[test]

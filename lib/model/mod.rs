@@ -301,6 +301,15 @@ mod tests {
     }
 
     #[test]
+    fn corners_that_are_the_same_are_one_vertex() {
+        // The parser makes two meshes of this; the last face has the corners of the second one again.
+        let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0.5 0\nvn 0 0 1\nvn 1 0 0\n\
+            f 1/1 2/1 3/1\nf 1//1 2//1 3//1\nf 1//2 2//2 3//2\nf 1//1 2//1 3//1\n";
+        let (model, _) = parse(text).expect("four faces");
+        assert_eq!((model.parts.len(), model.parts[0].mesh.vertices().len()), (1, 9));
+    }
+
+    #[test]
     fn normals_that_are_rounded_stay() {
         let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0.5774 0.8165\nf 1//1 2//1 3//1\n";
         let (model, _) = parse(text).expect("a triangle");
@@ -321,6 +330,49 @@ mod tests {
         refused("v 0 0 0\nf 1\n", "has no faces");
         let binary = Model::parse(&[0x7f, b'E', b'L', b'F', 0, 1, 2], "a.obj".as_ref(), NormalStyle::Smooth);
         assert!(binary.expect_err("binary").to_string().contains("is not text"));
+        for mark in [b"\xff\xfe", b"\xfe\xff"] {
+            let told = Model::parse(mark, "a.obj".as_ref(), NormalStyle::Smooth).expect_err("UTF-16");
+            assert!(told.to_string().contains("is UTF-16 text"), "{told}");
+        }
+    }
+
+    #[test]
+    fn a_polygon_that_cannot_be_cut_is_named_by_its_line() {
+        let corners = "v 0 0 0\nv 2 2 0\nv 2 0 0\nv 0 2 0\n";
+        let (_, warnings) = parse(&format!("{corners}f 1 2 3\nf 1 3 2 4\nf 1 2 3 4\n")).expect("three faces");
+        assert_eq!(warnings.len(), 1, "{warnings:?}");
+        assert!(
+            warnings[0].starts_with("folder/test.obj: line 7: a polygon that crosses itself"),
+            "{warnings:?}"
+        );
+    }
+
+    #[test]
+    fn a_file_is_read_with_progress() {
+        let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/cube.obj"));
+        let mut last = None;
+        let (model, _) =
+            Model::load(path, NormalStyle::Smooth, |done, total| last = Some((done, total))).expect("a cube");
+        assert_eq!(model.triangle_count(), 12);
+        let size = path.metadata().expect("a file").len();
+        assert_eq!(last, Some((size, size)));
+    }
+
+    #[test]
+    fn texture_coordinates_that_are_all_the_same_are_none() {
+        let has = |uv: &str| {
+            let text = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt {uv}\nf 1/1 2/1 3/2\n");
+            parse(&text).expect("a triangle").0.has_texture_coordinates()
+        };
+        assert!(has("0.5 0") && !has("0 0"));
+    }
+
+    #[test]
+    fn of_many_warnings_it_is_said_how_many_more_there_are() {
+        let some = |count: usize| limited(vec!["odd\n".to_owned(); count]);
+        assert_eq!(some(MAX_WARNINGS), vec!["odd\\n"; MAX_WARNINGS]);
+        assert_eq!(some(MAX_WARNINGS + 3).pop().as_deref(), Some("and 3 more of this kind"));
+        assert_eq!(some(MAX_WARNINGS + 3).len(), MAX_WARNINGS + 1);
     }
 
     #[test]
@@ -339,16 +391,27 @@ mod tests {
     #[test]
     fn fitting_into_a_sphere() {
         let (model, _) = parse("v 10 0 0\nv 16 0 0\nv 10 8 -2\nf 1 2 3\n").expect("a triangle");
-        let fitted = model.fitted(dvec3(0.0, 0.0, 4.0), 1.0);
-        let distances = fitted.parts[0]
-            .mesh
-            .vertices()
-            .iter()
-            .map(|vertex| vertex.position.distance(dvec3(0.0, 0.0, 4.0)));
-        assert!((distances.fold(0.0, f64::max) - 1.0).abs() < 1e-12);
+        assert_eq!(model.bounds(), (dvec3(10.0, 0.0, 0.0), dvec3(16.0, 8.0, 2.0)));
+        let (middle, size) = model.bounding_sphere();
+        assert_eq!(middle, dvec3(13.0, 4.0, 1.0));
+        assert!((size - dvec3(3.0, 4.0, 1.0).length()).abs() < 1e-12);
+        // Around the origin, and a small one beside it.
+        for (corners, size) in [
+            ("v -1 -1 0\nv 1 -1 0\nv 0 1 0\n", 2.0_f64.sqrt()),
+            ("v 1.5 1.5 -1.5\nv 2 1.5 -1.5\nv 1.5 2 -2\n", 0.25 * 3.0_f64.sqrt()),
+        ] {
+            let (model, _) = parse(&format!("{corners}f 1 2 3\n")).expect("a triangle");
+            assert!((model.bounding_sphere().1 - size).abs() < 1e-12, "{corners}");
+        }
+        let (center, radius) = (dvec3(0.0, 0.0, 4.0), 2.0);
+        let fitted = model.fitted(center, radius);
+        let first = fitted.parts[0].mesh.vertices()[0].position;
+        let expected = center - dvec3(3.0, 4.0, 1.0).normalize() * radius;
+        assert!(first.abs_diff_eq(expected, 1e-12), "{first}");
         let (point, _) = parse("v 1 1 1\nf 1 1 1\n").expect("a point, three times");
         assert!(point.fitted(DVec3::ZERO, 1.0).bounds().0.is_finite());
         let (huge, _) = parse("v 1e308 0 0\nv -1e308 0 0\nv 0 1e308 0\nf 1 2 3\n").expect("a large triangle");
+        assert!(huge.bounding_sphere().1.is_finite());
         assert!(huge.fitted(DVec3::ZERO, 1.0).bounds().1.is_finite());
         let (tiny, _) = parse("v 1e-310 0 0\nv 0 0 0\nv 0 1e-310 0\nf 1 2 3\n").expect("a tiny triangle");
         assert!(tiny.fitted(DVec3::ZERO, 1.0).bounds().1.is_finite());

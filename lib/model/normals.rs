@@ -338,6 +338,22 @@ mod tests {
     }
 
     #[test]
+    fn where_very_many_sheets_meet_each_keeps_its_own() {
+        // The tip of a flat cone whose faces have both windings.
+        let at_tip = |count: usize| {
+            let around = (0..count).map(|i| std::f64::consts::TAU * i as f64 / count as f64);
+            let base = around.map(|angle| [libm::cos(angle), 0.0, libm::sin(angle)]);
+            let positions: Vec<_> = std::iter::once([0.0, 0.5, 0.0]).chain(base).collect();
+            let sides = (0..count).map(|i| [i + 1, (i + 1) % count + 1]);
+            let faces: Vec<_> = sides.flat_map(|[a, b]| [[0, a, b], [0, b, a]]).collect();
+            let faces: Vec<&[usize]> = faces.iter().map(<[usize; 3]>::as_slice).collect();
+            smooth(&positions, &faces)[0][0].y.abs()
+        };
+        assert!((at_tip(MAX_AROUND / 2) - 1.0).abs() < 1e-12, "along the axis");
+        assert!(at_tip(MAX_AROUND / 2 + 1) < 0.9, "perpendicular to the side");
+    }
+
+    #[test]
     fn concave_corners_have_their_inner_angle() {
         let dent = [dvec3(0.0, 0.0, 0.0), dvec3(1.0, 1.0, 0.0), dvec3(2.0, 0.0, 0.0), dvec3(1.0, 3.0, 0.0)];
         let normal = face_normal(&dent);

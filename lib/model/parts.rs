@@ -252,3 +252,30 @@ impl Known {
         index
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::text::Given;
+    use super::*;
+    use crate::color::Color;
+
+    #[test]
+    fn a_texture_of_several_texels_needs_coordinates() {
+        let triangle = tobj::Mesh {
+            positions: vec![0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0],
+            texcoords: vec![0.5, 0.5],
+            indices: vec![0, 1, 2],
+            texcoord_indices: vec![0; 3],
+            ..tobj::Mesh::default()
+        };
+        let warnings = |uvs, [width, height]: [u32; 2]| {
+            let mut parts = Parts::new(&[], &Found::default(), NormalStyle::Flat);
+            let object = Object { number: 0, material: None, given: Given { uvs, normals: false } };
+            let texture = Texture::new(width, height, vec![Color::RED; (width * height) as usize]);
+            parts.add(&triangle, object, Some(texture));
+            parts.finish().expect("a triangle").1.len()
+        };
+        assert_eq!([[2, 1], [1, 2], [1, 1]].map(|size| warnings(false, size)), [1, 1, 0]);
+        assert_eq!(warnings(true, [2, 1]), 0);
+    }
+}

@@ -574,6 +574,8 @@ mod tests {
             ("f 1/1/1/1 2 3", "more than three indices"),
             ("f /1 2 3", "names no vertex"),
             ("f 1,2,3 1 2", "is no index"),
+            ("f 1 2 -", "'-' is no index"),
+            ("f 1 2 123", "vertex 123 is out of bounds"),
             ("v 1 2", "'v' has 2 numbers, and needs 3"),
             ("vt", "'vt' has 0 numbers"),
             ("vn 0 0 inf", "inf is not a finite number"),
@@ -588,6 +590,15 @@ mod tests {
         assert!(plain(&format!("{CORNERS}f 1 2 3\nf 9 9\n")).is_ok(), "a short face is left out");
         assert!(fault("f 1 2 4\nv 0 0 0\nv 0 0 0\nv 0 0 0\n").starts_with("line 1: vertex 4"));
         assert!(plain("f 1 2 3\nv 0 0 0\nv 0 0 0\nv 0 0 0\n").is_ok(), "vertices may follow their face");
+        for (faces, first) in [
+            ("f 1 2 5\nf 1 2 5\n", "line 1: vertex 5"),
+            ("f 1 2 5\nf 1 2 6\n", "line 2: vertex 6"),
+            ("f 1 2 6\nf 1 2 5\n", "line 1: vertex 6"),
+            ("f 5 4 1\n", "line 1: vertex 5"),
+        ] {
+            let told = fault(&format!("{faces}{CORNERS}v 0 0 0\n"));
+            assert!(told.starts_with(first), "{faces}: {told}");
+        }
     }
 
     #[test]
@@ -601,8 +612,19 @@ mod tests {
         left("vt 0\nvn 0 0 1\n", 2);
         left(&format!("{CORNERS}f 1 2 3\ng\nf 1 2 3\n"), 3 + 2 * (LARGE + 3));
         left("usemtl a\nusemtl b\nusemtl a\nmtllib c\n", 3 * LARGE);
+        assert!(plain(&format!("mtllib {}", "a".repeat(MAX_NAMES))).is_ok());
         let names = format!("mtllib{}", " a".repeat(MAX_NAMES));
         assert!(plain(&names).expect_err("too long").starts_with("line 1: the names after mtllib"));
+    }
+
+    #[test]
+    fn progress_is_told_at_every_64_kib_and_at_the_end() {
+        let text = "v 0 0 0\n".repeat((1 << 14) + 1);
+        let mut told = Vec::new();
+        let mut progress = |done, total| told.push((done, total));
+        PlainText::new(text.as_bytes(), &mut progress).read_to_string(&mut String::new()).expect("plain");
+        let total = (1 << 17) + 8;
+        assert_eq!(told, [1 << 16, 1 << 17, total].map(|done| (done, total)));
     }
 
     #[test]
@@ -613,6 +635,9 @@ mod tests {
         let warnings = plain(&text).expect("a triangle").1.warnings();
         assert_eq!(warnings.len(), 7, "{warnings:?}");
         assert_eq!(warnings[0], "line 4 and others: 2 lines and points are left out");
+        assert!(warnings[4].starts_with("line 9: the fourth number"), "1 is the weight without curves");
         assert_eq!(warnings[6], "line 11: 'zzz' is not known here, and left out");
+        let shown = plain(&format!("{CORNERS}s 1\nlod 2\nf +1 +2 +3\n")).expect("a triangle").1;
+        assert_eq!(shown.warnings(), [""; 0], "how it is shown elsewhere");
     }
 }

@@ -203,6 +203,7 @@ fn ears(points: &[DVec2], work: &mut u64) -> Option<Vec<[usize; 3]>> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::normals::area_vector;
     use super::*;
 
     fn cut(points: &[[f64; 2]]) -> (Vec<[usize; 3]>, bool, f64) {
@@ -281,6 +282,26 @@ mod tests {
                     turned.reverse();
                 }
             }
+        }
+    }
+
+    #[test]
+    fn a_polygon_is_cut_in_the_same_way_whichever_axis_it_faces() {
+        let mut arrow = [[0.0, 0.0], [2.0, 1.0], [4.0, 0.0], [2.0, 4.0]];
+        for _ in 0..2 {
+            let (expected, ..) = cut(&arrow);
+            // x and y as two of three coordinates, in turn.
+            for axis in 0..3 {
+                let corners = arrow.map(|[x, y]| {
+                    let mut place = [x, y, 0.0];
+                    place.rotate_right(axis);
+                    DVec3::from_array(place)
+                });
+                let (mut triangles, mut work) = (Vec::new(), MAX_WORK);
+                assert!(triangulate(&corners, area_vector(&corners), &mut work, &mut triangles));
+                assert_eq!(triangles, expected, "{corners:?}");
+            }
+            arrow.reverse();
         }
     }
 
