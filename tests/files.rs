@@ -244,11 +244,3 @@ fn as_is_leaves_a_model_where_it_is() {
     assert!(lit("fitted", &["--model", "a.obj"]) > 50);
     assert_eq!(lit("as_is", &["--model", "a.obj", "--as-is"]), 0, "far out of sight");
 }
-
-#[test]
-fn an_error_keeps_what_it_comes_from() {
-    use std::error::Error;
-    let error = rasterbook::files::load_texture(Path::new("nowhere.png")).expect_err("there is none");
-    let source = error.source().expect("the system's error").downcast_ref::<std::io::Error>();
-    assert_eq!(source.map(std::io::Error::kind), Some(std::io::ErrorKind::NotFound));
-}
