@@ -105,7 +105,7 @@ pub fn attenuation<R: Real>(distance: R) -> R {
 /// Where the angle between r and v passes 90° the highlight is cut off, which shows at small
 /// exponents. Source: fourth note, Phong model.
 #[must_use]
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[inline(always)]
 pub fn phong<R>(normal: Vector<R>, to_light: Vector<R>, to_eye: Vector<R>, exponent: f64) -> R
 where
     R: Real,
@@ -116,7 +116,7 @@ where
 /// The highlight of Blinn–Phong: max(0, n·h)^p, h half-way between light and eye. It has no cut-off
 /// while both are above the surface. Source: fourth note, Blinn–Phong model.
 #[must_use]
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[inline(always)]
 pub fn blinn_phong<R>(normal: Vector<R>, to_light: Vector<R>, to_eye: Vector<R>, exponent: f64) -> R
 where
     R: Real,
@@ -133,7 +133,7 @@ const LARGEST_WHOLE: f64 = 1024.0;
 ///
 /// A whole exponent takes a few multiplications, by the squares that its bits name, x⁵ = x · (x²)²: a small part of the
 /// time of a power in general, and the same to some roundings.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[inline(always)]
 fn power<R: Real>(base: R, exponent: f64) -> R {
     let mut left = exponent as u32;
     if f64::from(left) != exponent || exponent > LARGEST_WHOLE {
@@ -166,7 +166,7 @@ fn power<R: Real>(base: R, exponent: f64) -> R {
 /// The axes are of length 1 and in any space; the normal is in the same. Source: first note (a
 /// normal map on a quad).
 #[must_use]
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[inline(always)]
 pub fn mapped_normal<R: Real>(texel: Vector<R>, [t, b, n]: [Vector<R>; 3]) -> Vector<R> {
     let [x, y, z] = subtract(scale_down(texel, R::of(127.5)), [R::of(1.0); 3]);
     normalize(add(add(scale(t, x), scale(b, y)), scale(n, z)))
@@ -193,7 +193,7 @@ pub enum Light {
 impl Light {
     /// At a place: the direction towards the light, and how bright it is there.
     #[must_use]
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[inline(always)]
     pub fn at<R: Real>(&self, place: Vector<R>) -> (Vector<R>, R) {
         match *self {
             Self::Directional([x, y, z]) => ([R::of(x), R::of(y), R::of(z)], R::of(1.0)),
@@ -241,7 +241,7 @@ impl Material {
     /// As in the note, nothing keeps a broad highlight from reaching a little beyond where the
     /// surface turns away from the light.
     #[must_use]
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[inline(always)]
     pub fn shade<R: Real>(
         &self,
         surface: [R; 3],
