@@ -155,25 +155,43 @@ pub fn decode_texture(bytes: &[u8], path: &Path) -> Result<(Texture, ImageFormat
     decode_within(bytes, path, MAX_TEXELS)
 }
 
+/// Files that tests of this room and of the rooms below write.
+#[cfg(test)]
+pub(crate) mod scratch {
+    use std::fs;
+    use std::path::PathBuf;
+
+    /// A folder of files for one test, which removes it, also when it fails.
+    pub(crate) struct Folder(pub(crate) PathBuf);
+
+    impl Folder {
+        pub(crate) fn new(name: &str, files: &[(&str, &[u8])]) -> Self {
+            let folder = std::env::temp_dir().join(format!("rasterbook.{}.{name}", std::process::id()));
+            for (name, content) in files {
+                let path = folder.join(name);
+                fs::create_dir_all(path.parent().unwrap_or(&folder)).expect("a place for temporary files");
+                fs::write(path, content).expect("a place for temporary files");
+            }
+            Self(folder)
+        }
+    }
+
+    impl Drop for Folder {
+        fn drop(&mut self) {
+            let _ = fs::remove_dir_all(&self.0);
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
+    use super::scratch::Folder;
     use super::*;
-    use std::fs;
-
-    /// Writes a file for one test, which removes it.
-    fn written(name: &str, content: &[u8]) -> PathBuf {
-        let path = std::env::temp_dir().join(format!("rasterbook.{}.{name}", std::process::id()));
-        fs::write(&path, content).expect("a place for temporary files");
-        path
-    }
-
-    fn removed(path: &Path) {
-        fs::remove_file(path).expect("just written");
-    }
 
     #[test]
     fn a_file_is_read_up_to_a_limit() {
-        let path = written("limit.txt", b"12345");
+        let folder = Folder::new("limit", &[("a.txt", b"12345")]);
+        let path = folder.0.join("a.txt");
         assert_eq!(read_file(&path).expect("a small file"), b"12345");
         assert_eq!(read_file_within(&path, 5).expect("as large as it may be"), b"12345");
         let refused = |limit| read_file_within(&path, limit).expect_err("too large").to_string();
@@ -186,7 +204,6 @@ mod tests {
         assert!(told.ends_with(&format!("has 268435457 bytes; {most}")), "{told}");
         file.set_len(0).expect("empty");
         assert_eq!(read_file(&path).expect("an empty file"), b"");
-        removed(&path);
     }
 
     #[test]
@@ -219,12 +236,12 @@ mod tests {
         let mut png = std::io::Cursor::new(Vec::new());
         image::RgbImage::new(2, 1).write_to(&mut png, ImageFormat::Png).expect("two pixels");
         for (name, wrong) in [("a.png", false), ("a.bmp", true), ("a.thing", false)] {
-            let path = written(name, png.get_ref());
+            let folder = Folder::new("content", &[(name, png.get_ref())]);
+            let path = folder.0.join(name);
             let (texture, warnings) = load_texture(&path).expect("an image");
             assert_eq!((texture.width(), texture.height()), (2, 1));
             let told = wrong.then(|| format!("{}: is a Png file, whatever its name says", path.display()));
             assert_eq!(warnings, Vec::from_iter(told));
-            removed(&path);
         }
         let (texture, format) = decode_texture(png.get_ref(), "a.bmp".as_ref()).expect("an image");
         assert_eq!((texture.width(), format), (2, ImageFormat::Png));

@@ -73,6 +73,7 @@ pub(crate) fn replace(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::files::scratch::Folder;
 
     #[test]
     fn every_format_holds_the_picture() {
@@ -88,8 +89,8 @@ mod tests {
 
     #[test]
     fn a_picture_replaces_the_file_before_and_nothing_else_is_left() {
-        let top = std::env::temp_dir().join(format!("rasterbook.{}.save", std::process::id()));
-        let (folder, mut picture) = (top.join("new"), Framebuffer::new(3, 2));
+        let top = Folder::new("save", &[]);
+        let (folder, mut picture) = (top.0.join("new"), Framebuffer::new(3, 2));
         let path = folder.join("picture.png");
         for color in [crate::Color::RED, crate::Color::GREEN] {
             picture.clear(color);
@@ -98,7 +99,6 @@ mod tests {
             assert_eq!((read.dimensions(), read.get_pixel(0, 0).0), ((3, 2), color.channels()));
         }
         assert_eq!(fs::read_dir(&folder).expect("made").count(), 1);
-        fs::remove_dir_all(top).expect("made");
     }
 
     #[test]

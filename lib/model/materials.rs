@@ -491,32 +491,12 @@ fn options_and_name(mut rest: &[u8]) -> (Vec<MapOption<'_>>, &[u8]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::files::scratch::Folder;
 
     fn library(text: &str) -> (Vec<Material>, Warnings) {
         let mut plain = PlainLibrary::new(0);
         Statements::new(text.as_bytes()).for_each(|(line, statement)| plain.take(line, &statement));
         plain.finish()
-    }
-
-    /// A folder of files for one test, which removes it.
-    struct Folder(PathBuf);
-
-    impl Folder {
-        fn new(name: &str, files: &[(&str, &[u8])]) -> Self {
-            let folder = std::env::temp_dir().join(format!("rasterbook.{}.{name}", std::process::id()));
-            for (name, content) in files {
-                let path = folder.join(name);
-                std::fs::create_dir_all(folder_of(&path)).expect("a place for temporary files");
-                std::fs::write(path, content).expect("a place for temporary files");
-            }
-            Self(folder)
-        }
-    }
-
-    impl Drop for Folder {
-        fn drop(&mut self) {
-            let _ = std::fs::remove_dir_all(&self.0);
-        }
     }
 
     /// An image file of two pixels.

@@ -28,6 +28,11 @@ chapters!(
     "../../chapters/ch10_matrices_lighting/main.rs" ch10_matrices_lighting,
 );
 
+/// All rows of all chapters' tables, each with the name of its program.
+pub(crate) fn variants() -> impl Iterator<Item = (&'static str, &'static Variant)> {
+    CHAPTERS.iter().flat_map(|(chapter, _)| chapter.variants.iter().map(|variant| (chapter.name, variant)))
+}
+
 /// A row of a chapter's table.
 pub(crate) fn variant(chapter: &str, name: &str) -> &'static Variant {
     let (chapter, _) =

@@ -1,6 +1,7 @@
 //! The histories of pixels: what is reported is what stands in the picture, and its numbers are those of the formulas.
 
-use crate::chapters::{CHAPTERS, variant};
+use crate::chapters::{CHAPTERS, variant, variants};
+use crate::sizes::GRID;
 use rasterbook::figure::{DrawOptions, RasterizerChoice, Variant};
 use rasterbook::inspect::{History, Steps, histories, history};
 use rasterbook::{Color, Framebuffer, Pixel};
@@ -29,10 +30,7 @@ fn pixels((width, height): (u32, u32)) -> Vec<Pixel> {
 
 #[test]
 fn what_is_reported_is_what_stands_in_the_picture_and_no_event_is_unknown() {
-    let rows: Vec<(&str, &Variant)> = CHAPTERS
-        .iter()
-        .flat_map(|(chapter, _)| chapter.variants.iter().map(|variant| (chapter.name, variant)))
-        .collect();
+    let rows: Vec<_> = variants().collect();
     rows.par_iter().for_each(|&(chapter, variant)| {
         let subject = variant.subject().expect("assets");
         let own = variant.options(subject.as_ref());
@@ -49,16 +47,13 @@ fn what_is_reported_is_what_stands_in_the_picture_and_no_event_is_unknown() {
 
 /// What the outline of a clipped triangle is drawn in.
 const OUTLINE: Color = Color::rgb(255, 220, 60);
-/// The lines between enlarged pixels: the finished picture has them, and no step.
-const GRID: Color = Color::gray(80);
 
 #[test]
 fn steps_lead_to_the_picture() {
-    let with_outlines: usize = CHAPTERS
+    let rows: Vec<_> = variants().filter(|(_, variant)| !OTHER_BUFFER.contains(&variant.name)).collect();
+    let with_outlines: usize = rows
         .par_iter()
-        .flat_map_iter(|(chapter, _)| chapter.variants.iter().map(move |variant| (chapter, variant)))
-        .filter(|(_, variant)| !OTHER_BUFFER.contains(&variant.name))
-        .map(|(chapter, variant)| {
+        .map(|&(chapter, variant)| {
             let subject = variant.subject().expect("assets");
             let own = variant.options(subject.as_ref());
             // Small, where that shows the same.
@@ -69,11 +64,12 @@ fn steps_lead_to_the_picture() {
             let count = steps.animation().frames - steps.animation().rate;
             let last = steps.frame(count - 1);
             let picture = variant.draw(&options);
+            // The finished picture has lines between enlarged pixels, and no step.
             let both = last.rows_from_top().flatten().zip(picture.rows_from_top().flatten());
             let differing = both.filter(|(step, end)| step != end && **end != GRID).count();
-            assert_eq!(differing, 0, "{} {}", chapter.name, variant.name);
+            assert_eq!(differing, 0, "{chapter} {}", variant.name);
             let has_outline = |number| steps.frame(number).rows_from_top().flatten().any(|&c| c == OUTLINE);
-            usize::from(chapter.name == "ch09_pipeline" && (0..count).any(has_outline))
+            usize::from(chapter == "ch09_pipeline" && (0..count).any(has_outline))
         })
         .sum();
     assert!(with_outlines > 0, "triangles are clipped in chapter 9");

@@ -4,7 +4,7 @@ use rasterbook::figure::{Given, Kind, Knob, Scene, Value, Variant};
 use rasterbook::{Color, Framebuffer};
 use rayon::prelude::*;
 
-use crate::chapters::CHAPTERS;
+use crate::chapters::variants;
 
 /// The picture with knobs at values.
 fn with(variant: &Variant, values: &[(&Knob, Value)]) -> Framebuffer {
@@ -39,11 +39,7 @@ fn values(variant: &Variant, knob: &Knob) -> Vec<Value> {
 
 #[test]
 fn every_knob_changes_its_picture_over_its_whole_range() {
-    let variants: Vec<(&str, &Variant)> = CHAPTERS
-        .iter()
-        .flat_map(|(chapter, _)| chapter.variants.iter().map(|variant| (chapter.name, variant)))
-        .filter(|(_, variant)| !variant.knobs.is_empty())
-        .collect();
+    let variants: Vec<_> = variants().filter(|(_, variant)| !variant.knobs.is_empty()).collect();
     variants.par_iter().for_each(|(chapter, variant)| {
         let before = with(variant, &[]);
         for knob in variant.knobs {
@@ -63,7 +59,7 @@ fn every_knob_changes_its_picture_over_its_whole_range() {
 
 #[test]
 fn a_knob_reads_what_it_shows() {
-    for variant in CHAPTERS.iter().flat_map(|(chapter, _)| chapter.variants) {
+    for (_, variant) in variants() {
         let mut scene = Scene::new(variant, &Given::default()).expect("its own model");
         for knob in variant.knobs {
             for value in values(variant, knob).into_iter().chain([knob.default()]) {
@@ -78,8 +74,8 @@ fn a_knob_reads_what_it_shows() {
 
 #[test]
 fn all_knobs_can_stand_at_their_ends_together() {
-    let variants: Vec<&Variant> = CHAPTERS.iter().flat_map(|(chapter, _)| chapter.variants).collect();
-    variants.par_iter().for_each(|variant| {
+    let variants: Vec<_> = variants().collect();
+    variants.par_iter().for_each(|(_, variant)| {
         let mut scene = Scene::new(variant, &Given::default()).expect("its own model");
         // Another size than its own, and small: there are many.
         scene.size = (97, 61);

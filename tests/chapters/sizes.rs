@@ -1,12 +1,15 @@
 //! `--size` means the same for every variant: a scene scales, keeps its proportions and lies in the middle; what is about
 //! single pixels is the same picture with more or less around it.
 
-use crate::chapters::{CHAPTERS, variant};
+use crate::chapters::{variant, variants};
 use rasterbook::figure::picture::paste;
 use rasterbook::figure::{DrawOptions, Variant};
 use rasterbook::inspect::{history, overdraw};
 use rasterbook::{Color, Framebuffer, Pixel};
 use rayon::prelude::*;
+
+/// From a certain size on there is a grid between enlarged pixels.
+pub(crate) const GRID: Color = Color::gray(80);
 
 fn draw(variant: &Variant, size: (u32, u32)) -> Framebuffer {
     let subject = variant.subject().expect("assets");
@@ -15,11 +18,7 @@ fn draw(variant: &Variant, size: (u32, u32)) -> Framebuffer {
 
 /// Looks at all variants that scale, or at all that do not, and collects what is wrong with them.
 fn all(in_pixels: bool, what_is_wrong: impl Fn(&Variant) -> Option<String> + Sync) {
-    let variants: Vec<_> = CHAPTERS
-        .iter()
-        .flat_map(|(chapter, _)| chapter.variants.iter().map(|variant| (chapter.name, variant)))
-        .filter(|(_, variant)| variant.in_pixels == in_pixels)
-        .collect();
+    let variants: Vec<_> = variants().filter(|(_, variant)| variant.in_pixels == in_pixels).collect();
     let look = |(chapter, variant): &(&str, &Variant)| {
         what_is_wrong(variant).map(|wrong| format!("{chapter} {}: {wrong}", variant.name))
     };
@@ -30,8 +29,6 @@ fn all(in_pixels: bool, what_is_wrong: impl Fn(&Variant) -> Option<String> + Syn
 /// Of a part of the pixels of `this`, those that are not like its first one: how many show something that `that` does not
 /// show near the same place, and how many there are. `that` is `factor` times as large.
 fn missing(this: &Framebuffer, that: &Framebuffer, factor: f64) -> (usize, usize) {
-    // From a certain size on there is a grid between enlarged pixels.
-    const GRID: Color = Color::gray(80);
     let background = this.get(0, 0);
     let reach = factor.ceil() as i32;
     let (mut missing, mut count) = (0, 0);
