@@ -14,11 +14,10 @@
 //! assert_eq!(clipped.len(), 4); // the vertex at x = 4, beyond x = w, is cut off
 //! ```
 
-use std::array::from_fn;
-
 use arrayvec::ArrayVec;
 use glam::{DVec3, DVec4, dvec4};
 
+use crate::real::{each, map3};
 use crate::target::Target;
 use crate::transform::perspective_divide;
 
@@ -37,7 +36,7 @@ impl<const N: usize> ClipVertex<N> {
     fn between(a: Self, b: Self, t: f64) -> Self {
         Self {
             position: a.position + (b.position - a.position) * t,
-            varyings: from_fn(|i| a.varyings[i] + (b.varyings[i] - a.varyings[i]) * t),
+            varyings: each(a.varyings, |i, a| a + (b.varyings[i] - a) * t),
         }
     }
 }
@@ -330,6 +329,16 @@ pub struct RecordedVertex {
     pub position: DVec4,
     /// The values that it carries.
     pub varyings: Vec<f64>,
+}
+
+impl RecordedVertex {
+    /// Those of a triangle.
+    pub(crate) fn of_triangle<'a, V>(triangle: &'a [V; 3]) -> [Self; 3]
+    where
+        Self: From<&'a V>,
+    {
+        map3(triangle.each_ref(), Self::from)
+    }
 }
 
 impl<const N: usize> From<&ClipVertex<N>> for RecordedVertex {

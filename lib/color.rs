@@ -76,7 +76,8 @@ impl Color {
     #[must_use]
     #[inline]
     pub fn to_f64(self) -> [f64; 3] {
-        self.channels().map(f64::from)
+        let [red, green, blue] = self.channels();
+        [f64::from(red), f64::from(green), f64::from(blue)]
     }
 }
 

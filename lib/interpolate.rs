@@ -11,13 +11,11 @@
 //! assert_eq!(barycentric_weights(dvec2(2.0, 1.0), triangle), [1.0 / 3.0; 3]); // the centroid
 //! ```
 
-use std::array::from_fn;
-
 use glam::DVec2;
 
 use crate::area::twice_signed_area;
 use crate::payload::{Payload, StepClamp, Walk};
-use crate::real::{Mask, Real, each};
+use crate::real::{Mask, Real, each, map3};
 use crate::rect::Rect;
 use crate::scanline::{Edge, Half, Split, split};
 use crate::scissor::Scissor;
@@ -107,7 +105,7 @@ pub fn step_values<const N: usize>(
 }
 
 fn positions_and_varyings<V: Copy>(triangle: [ScreenVertex<V>; 3]) -> ([DVec2; 3], [V; 3]) {
-    (triangle.map(|vertex| vertex.position), triangle.map(|vertex| vertex.varyings))
+    (map3(triangle, |vertex| vertex.position), map3(triangle, |vertex| vertex.varyings))
 }
 
 // ANCHOR: step_values
@@ -196,10 +194,10 @@ impl Interpolation {
 pub fn perspective_weights<R: Real>(weights: [R; 3], w: [R; 3]) -> [R; 3] {
     let zero = R::of(0.0);
     let is_nonzero = |x: R| x.is_less(zero).not().and(zero.is_less(x).not()).not();
-    let parts: [R; 3] = from_fn(|i| weights[i] / w[i]);
+    let parts = each(weights, |i, weight| weight / w[i]);
     let sum = parts[0] + parts[1] + parts[2];
     let is_possible = w.into_iter().fold(is_nonzero(sum), |mask, w| mask.and(is_nonzero(w)));
-    from_fn(|i| R::select(is_possible, parts[i] / sum, weights[i]))
+    each(weights, |i, weight| R::select(is_possible, parts[i] / sum, weight))
 }
 // ANCHOR_END: perspective_weights
 
@@ -218,7 +216,7 @@ fn perspective_correct<R: Real, const N: usize>(
 ) -> Projected<R, N> {
     let denominator = b.w + (a.w - b.w) * t;
     let value = |va: R, vb: R| (b.w * va + (a.w * vb - b.w * va) * t) / denominator;
-    Projected { w: (a.w * b.w) / denominator, values: from_fn(|i| value(a.values[i], b.values[i])) }
+    Projected { w: (a.w * b.w) / denominator, values: each(a.values, |i, a| value(a, b.values[i])) }
 }
 // ANCHOR_END: perspective_correct
 
@@ -229,7 +227,7 @@ fn reciprocal<R: Real, const N: usize>([a, b]: [Projected<R, N>; 2], t: R) -> Pr
     let one = R::of(1.0);
     let one_over_w = one / a.w + (one / b.w - one / a.w) * t;
     let value = |va: R, vb: R| (va / a.w + (vb / b.w - va / a.w) * t) / one_over_w;
-    Projected { w: one / one_over_w, values: from_fn(|i| value(a.values[i], b.values[i])) }
+    Projected { w: one / one_over_w, values: each(a.values, |i, a| value(a, b.values[i])) }
 }
 // ANCHOR_END: reciprocal
 
@@ -265,7 +263,7 @@ pub fn step_parameter_and_depth<const N: usize>(
     emit: impl FnMut(i32, i32, Projected<f64, N>, f64),
 ) {
     let (positions, varyings) = positions_and_varyings(triangle);
-    let (points, depths) = (varyings.map(|(point, _)| point), varyings.map(|(_, depth)| depth));
+    let (points, depths) = (map3(varyings, |(point, _)| point), map3(varyings, |(_, depth)| depth));
     let scissor = scissor.into();
     begin_projected(&scissor, positions, &points, Some(depths), interpolation, walk);
     step_parameter_in(positions, points, depths, interpolation, walk, scissor.rect, emit);
@@ -392,6 +390,8 @@ impl Payload for EdgeParameter {
 
 #[cfg(test)]
 mod tests {
+    use std::array::from_fn;
+
     use super::*;
 
     use std::any::Any;

@@ -11,7 +11,7 @@
 
 use crate::color::Color;
 use crate::depth::DepthTest;
-use crate::real::{Real, Scalar, each};
+use crate::real::{Real, Scalar, each, map3};
 use crate::rect::Pixel;
 use crate::shader::{Paint, Shaded};
 use crate::target::Target;
@@ -67,9 +67,9 @@ impl Rounding {
     pub fn color<R: Scalar>(self, channels: [R; 3]) -> Color {
         let channels = match self {
             Self::Truncate => channels,
-            Self::Nearest => channels.map(|channel| channel + R::of(0.5)),
+            Self::Nearest => map3(channels, |channel| channel + R::of(0.5)),
         };
-        Color::truncated(channels.map(Into::into))
+        Color::truncated(map3(channels, Into::into))
     }
 }
 

@@ -19,7 +19,7 @@ use std::sync::Arc;
 use crate::color::Color;
 use crate::interpolate::linear;
 use crate::merge::Rounding;
-use crate::real::Real;
+use crate::real::{Real, map3};
 use crate::texture::{AddressMode, Texture, bilinear};
 
 /// A texture and its copies, each half as wide and high as the one before, down to one texel.
@@ -95,7 +95,7 @@ impl MipMaps {
     /// Source: Direct3D 11.3 functional specification, 7.18.11.
     #[must_use]
     pub fn level_of_detail<R: Real>(&self, uv_dx: [R; 2], uv_dy: [R; 2]) -> R {
-        let [width, height, _] = self.levels[0].map(R::of);
+        let [width, height, _] = map3(self.levels[0], R::of);
         let length = |way: [R; 2]| {
             let [x, y] = [way[0] * width, way[1] * height];
             (x * x + y * y).sqrt()

@@ -19,6 +19,7 @@
 //! assert_eq!(values, [0.0, 0.25, 0.5, 0.75, 1.0]);
 //! ```
 
+use crate::real::{each, map3};
 use crate::rect::Rect;
 use crate::scanline::{Edge, EdgeWalk, Half, Span, Split, halves};
 
@@ -91,17 +92,17 @@ impl Payload for f64 {
 impl<P: Payload, const N: usize> Payload for [P; N] {
     #[inline]
     fn slope(start: Self, end: Self, length: f64) -> Self {
-        std::array::from_fn(|i| P::slope(start[i], end[i], length))
+        each(start, |i, start| P::slope(start, end[i], length))
     }
 
     #[inline]
     fn stepped(self, slope: Self, count: f64) -> Self {
-        std::array::from_fn(|i| self[i].stepped(slope[i], count))
+        each(self, |i, value| value.stepped(slope[i], count))
     }
 
     #[inline]
     fn clamped(self, start: Self, end: Self, clamp: StepClamp) -> Self {
-        std::array::from_fn(|i| self[i].clamped(start[i], end[i], clamp))
+        each(self, |i, value| value.clamped(start[i], end[i], clamp))
     }
 }
 
@@ -111,7 +112,7 @@ impl Split {
     #[must_use]
     #[inline]
     pub fn attach<T: Copy>(&self, carried: [T; 3], between: impl Fn(T, T, f64) -> T) -> [Half<T>; 2] {
-        let [p1, p2, p3] = self.order.map(|i| carried[i]);
+        let [p1, p2, p3] = map3(self.order, |i| carried[i]);
         let p = between(p1, p3, self.t);
         let (left, right) = if self.is_middle_right { (p, p2) } else { (p2, p) };
         halves(p1, left, right, p3)

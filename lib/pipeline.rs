@@ -33,6 +33,7 @@ use crate::clip::{Assembled, ClipVertex, MAX_VERTICES, NdcVertex, RecordedVertex
 use crate::mesh::Mesh;
 use crate::probe::Probe;
 use crate::raster::Rasterizer;
+use crate::real::map3;
 use crate::shader::Shader;
 use crate::state::{LoadOp, RenderState};
 use crate::target::Target;
@@ -61,14 +62,14 @@ pub fn draw<S: Shader<N>, Z: Rasterizer, P: Probe + ?Sized, const N: usize>(
     let shaded: Vec<ClipVertex<N>> = mesh.vertices().iter().map(|it| shader.vertex(it)).collect();
 
     // 2. Primitive assembly: three vertices make a triangle.
-    let triangles = mesh.triangles().map(|triangle| (triangle, triangle.map(|i| shaded[i])));
+    let triangles = mesh.triangles().map(|triangle| (triangle, map3(triangle, |i| shaded[i])));
 
     // 3. Clipping, in clip space, where edges and values are still straight.
     let planes = state.clip_volume.planes(state.depth_range);
     let polygons = triangles.map(|(indices, triangle)| {
         probe.assembled(&|| Assembled {
-            vertices: triangle.each_ref().map(RecordedVertex::from),
-            model: all_three(indices.map(|index| shader.position(&mesh.vertices()[index]))),
+            vertices: RecordedVertex::of_triangle(&triangle),
+            model: all_three(map3(indices, |index| shader.position(&mesh.vertices()[index]))),
             planes: planes.to_vec(),
             test: state.clip_test,
         });

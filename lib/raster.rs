@@ -37,7 +37,7 @@ use crate::fragment::FragmentStages;
 use crate::interpolate::{Projected, ScreenVertex, step_parameter_and_depth};
 use crate::merge::Rounding;
 use crate::probe::{Piece, Probe};
-use crate::real::Scalar;
+use crate::real::{Scalar, map3};
 use crate::shader::Shader;
 use crate::state::RenderState;
 use crate::target::Target;
@@ -97,9 +97,9 @@ fn draw_triangle<S: Shader<N>, P: Probe + ?Sized, const N: usize>(
     probe: &P,
 ) {
     // 5. Culling, by the signed area in NDC.
-    let [a, b, c] = triangle.map(|vertex| vertex.position.truncate());
+    let [a, b, c] = map3(*triangle, |vertex| vertex.position.truncate());
     let signed_area = twice_signed_area(a, b, c);
-    probe.piece(&|| Piece { vertices: triangle.each_ref().map(RecordedVertex::from), signed_area });
+    probe.piece(&|| Piece { vertices: RecordedVertex::of_triangle(triangle), signed_area });
     if !is_drawable(signed_area) || state.cull.culls(signed_area, state.front_face) {
         probe.culled();
         return;
@@ -108,7 +108,7 @@ fn draw_triangle<S: Shader<N>, P: Probe + ?Sized, const N: usize>(
     // 6. Viewport: NDC → screen.
     let scissor = target.color.scissor();
     let viewport = state.viewport_in(scissor.rect);
-    let on_screen = triangle.map(|vertex| {
+    let on_screen = map3(*triangle, |vertex| {
         let projected = Projected { w: vertex.w, values: vertex.varyings };
         let position = viewport.pixel_corners(vertex.position);
         ScreenVertex { position, varyings: (projected, vertex.position.z) }
@@ -116,7 +116,7 @@ fn draw_triangle<S: Shader<N>, P: Probe + ?Sized, const N: usize>(
 
     // How values change from pixel to pixel, for shaders that ask.
     let varyings = TriangleVaryings::new(triangle, state.interpolation);
-    let gradients = weight_gradients(on_screen.map(|vertex| vertex.position));
+    let gradients = weight_gradients(map3(on_screen, |vertex| vertex.position));
 
     // 7. Rasterization: which pixels, and which values. Each fragment goes through stages 8 to 10.
     let mut stages = FragmentStages { shader, state, rounding: Rounding::Truncate, target, probe };

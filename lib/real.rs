@@ -102,10 +102,22 @@ pub fn each<T: Copy, const N: usize>(mut numbers: [T; N], change: impl Fn(usize,
         };
     }
     change!(0 1 2 3 4 5 6 7);
-    for (k, number) in numbers.iter_mut().enumerate().skip(8) {
-        *number = change(k, *number);
+    if const { 8 < N } {
+        for (k, number) in numbers.iter_mut().enumerate().skip(8) {
+            *number = change(k, *number);
+        }
     }
     numbers
+}
+
+/// `map` of an array of three: the vertices of a triangle, the channels of a color.
+///
+/// That `map` is seven functions, one calling the other, for each closure. Where the compiler optimises little, as in the dev
+/// profile, they took a fifth of the time in which chapter 10 is built, and a tenth of that in which it draws.
+#[inline(always)]
+#[must_use]
+pub(crate) fn map3<T, U>([a, b, c]: [T; 3], mut change: impl FnMut(T) -> U) -> [U; 3] {
+    [change(a), change(b), change(c)]
 }
 
 /// A single number: one answer to a comparison, and a value that can be stored.
@@ -222,13 +234,13 @@ macro_rules! plain_number {
             #[inline]
             fn gather_color(column: Self, row: Self, row_bits: u32, colors: &[Color]) -> Color {
                 // A plane has fewer than 2³² columns and rows; from a float, a `u32` is made faster than a `usize`.
-                let [column, row] = [column, row].map(|index| index as u32 as usize);
-                colors[(row << row_bits) + column]
+                let index = |along: Self| along as u32 as usize;
+                colors[(index(row) << row_bits) + index(column)]
             }
 
             #[inline]
             fn channels(color: Color) -> [Self; 3] {
-                color.channels().map(Self::from)
+                map3(color.channels(), Self::from)
             }
         }
     };

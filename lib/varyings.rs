@@ -18,7 +18,7 @@ use glam::DVec2;
 use crate::area::twice_signed_area;
 use crate::clip::NdcVertex;
 use crate::interpolate::{Interpolation, Projected};
-use crate::real::{Real, each};
+use crate::real::{Real, each, map3};
 
 /// How varyings change from one pixel to the next: to the right, and upwards.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,7 +60,7 @@ impl<R: Real, const N: usize> LinearVaryings<R, N> {
     #[inline(always)]
     pub fn new(vertex: &NdcVertex<N>, interpolation: Interpolation) -> Self {
         let (w, depth) = (R::of(vertex.w), R::of(vertex.position.z));
-        let values = vertex.varyings.map(R::of);
+        let values = each([R::of(0.0); N], |k, _| R::of(vertex.varyings[k]));
         match interpolation {
             Interpolation::Affine => Self { distance: w, depth, values },
             Interpolation::PerspectiveCorrect | Interpolation::Reciprocal => {
@@ -157,7 +157,7 @@ impl<R: Real, const N: usize> TriangleVaryings<R, N> {
     #[inline]
     pub fn new(vertices: &[NdcVertex<N>; 3], interpolation: Interpolation) -> Self {
         let [first, second, third] =
-            vertices.each_ref().map(|vertex| LinearVaryings::new(vertex, interpolation));
+            map3(vertices.each_ref(), |vertex| LinearVaryings::new(vertex, interpolation));
         let difference = |vertex: LinearVaryings<R, N>| vertex.with(&first, |a, b| a - b);
         Self { first, to_second: difference(second), to_third: difference(third), interpolation }
     }
@@ -191,9 +191,9 @@ impl<R: Real, const N: usize> TriangleVaryings<R, N> {
         point: &Projected<R, N>,
         weight_gradients: WeightGradients<R>,
     ) -> Derivatives<R, N> {
-        let changes = weight_gradients.map(|weights| self.change(weights));
-        let [dx, dy] = changes.map(|change| change.derivative(point, self.interpolation));
-        Derivatives { dx, dy }
+        let along = |weights| self.change(weights).derivative(point, self.interpolation);
+        let [x, y] = weight_gradients;
+        Derivatives { dx: along(x), dy: along(y) }
     }
 }
 // ANCHOR_END: triangle_varyings

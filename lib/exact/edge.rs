@@ -28,7 +28,7 @@ use std::ops::Range;
 use glam::{DVec2, dvec2};
 
 use crate::area::Winding;
-use crate::real::{Real, Scalar};
+use crate::real::{Real, Scalar, map3};
 use crate::rect::Rect;
 use crate::scissor::Scissor;
 use crate::varyings::{WeightGradients, weight_gradients};
@@ -213,7 +213,7 @@ impl Coverage {
     #[must_use]
     #[inline]
     pub fn edge_values(&self, point: Subpixel) -> [i64; 3] {
-        self.edges.map(|edge| edge.at(point))
+        map3(self.edges, |edge| edge.at(point))
     }
 
     /// Whether a point where the edge functions have these values belongs to the triangle: three
@@ -240,7 +240,7 @@ impl Coverage {
     #[must_use]
     #[inline]
     pub fn weight_step<R: Scalar>(&self) -> [R; 2] {
-        self.weights(self.edges.map(|edge| edge.step_x * SUBPIXELS))
+        self.weights(map3(self.edges, |edge| edge.step_x * SUBPIXELS))
     }
 
     /// The area with the sign of the winding, doubled, in square pixels.
@@ -311,7 +311,7 @@ impl Coverage {
     fn row(&self, columns: Range<i32>, y: i32) -> impl Iterator<Item = (i32, [i64; 3])> + use<> {
         let covered = self.covered_columns(columns, y);
         let mut values = self.edge_values(center(covered.start, y));
-        let steps = self.edges.map(|edge| edge.step_x * SUBPIXELS);
+        let steps = map3(self.edges, |edge| edge.step_x * SUBPIXELS);
         covered.map(move |x| {
             let here = values;
             values = from_fn(|i| here[i] + steps[i]);
@@ -329,7 +329,7 @@ impl Coverage {
         let columns = columns.start.clamp(-FAR, FAR)..columns.end.clamp(-FAR, FAR);
         let y = y.clamp(-FAR, FAR);
         let values = self.edge_values(center(columns.start, y));
-        let [a, b, c] = from_fn(|i| self.edges[i].columns(columns.clone(), values[i]));
+        let [a, b, c] = map3([0, 1, 2], |i| self.edges[i].columns(columns.clone(), values[i]));
         a.start.max(b.start).max(c.start)..a.end.min(b.end).min(c.end)
     }
     // ANCHOR_END: covered_columns

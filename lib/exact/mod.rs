@@ -44,7 +44,7 @@ use crate::fragment::FragmentStages;
 use crate::merge::Rounding;
 use crate::probe::{Piece, Probe};
 use crate::raster::Rasterizer;
-use crate::real::Scalar;
+use crate::real::{Scalar, map3};
 use crate::shader::Shader;
 use crate::state::RenderState;
 use crate::target::Target;
@@ -112,7 +112,7 @@ pub(crate) fn cut_to_guard_band<const N: usize>(triangle: [NdcVertex<N>; 3]) -> 
         Plane::homogeneous(dvec4(0.0, 1.0, 0.0, GUARD_BAND)),
         Plane::homogeneous(dvec4(0.0, -1.0, 0.0, GUARD_BAND)),
     ];
-    let clip = triangle.map(|vertex| ClipVertex {
+    let clip = map3(triangle, |vertex| ClipVertex {
         position: (vertex.position * vertex.w).extend(vertex.w),
         varyings: vertex.varyings,
     });
@@ -132,11 +132,11 @@ fn draw_triangle<R: Scalar, S: Shader<N>, P: Probe + ?Sized, const N: usize>(
     // 6. Viewport: NDC → screen, and to 1/256 pixel.
     let scissor = target.color.scissor();
     let viewport = state.viewport_in(scissor.rect);
-    let coverage = Coverage::new(triangle.map(|vertex| viewport.pixel_areas(vertex.position)));
+    let coverage = Coverage::new(map3(*triangle, |vertex| viewport.pixel_areas(vertex.position)));
 
     // 5. Culling, by the signed area on the screen.
     let signed_area = coverage.as_ref().map_or(0.0, Coverage::signed_area);
-    probe.piece(&|| Piece { vertices: triangle.each_ref().map(RecordedVertex::from), signed_area });
+    probe.piece(&|| Piece { vertices: RecordedVertex::of_triangle(triangle), signed_area });
     let is_culled = state.cull.culls(signed_area, state.front_face);
     let Some(coverage) = coverage.filter(|_| !is_culled) else {
         probe.culled();

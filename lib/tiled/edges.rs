@@ -1,6 +1,5 @@
 //! Which pixels of a tile a triangle covers, and how much its vertices weigh there: always exact.
 
-use std::array::from_fn;
 use std::ops::Range;
 
 use super::bands::TILE_HEIGHT;
@@ -8,7 +7,7 @@ use super::instruction_set::{Four, InstructionSet};
 use super::lanes::LANES;
 use super::snapped::{NO_FRACTIONS, SnappedPosition};
 use crate::exact::edge::{SUBPIXELS, is_top_left};
-use crate::real::each;
+use crate::real::{each, map3};
 use crate::rect::{Pixel, Rect};
 
 const PIXEL: i32 = SUBPIXELS as i32;
@@ -208,13 +207,13 @@ impl SmallTriangleSetup {
         let area = start[0] + start[1] + start[2];
         let sign = area.signum();
         let edges = [[b, c], [c, a], [a, b]];
-        let right = edges.map(|[from, to]| (from[1] - to[1]) * sign);
-        let up = edges.map(|[from, to]| (to[0] - from[0]) * sign);
+        let right = map3(edges, |[from, to]| (from[1] - to[1]) * sign);
+        let up = map3(edges, |[from, to]| (to[0] - from[0]) * sign);
         Self {
-            start: start.map(|value| (value * sign) as f32),
-            right: right.map(|step| (step * PIXEL) as f32),
-            up: up.map(|step| (step * PIXEL) as f32),
-            fill_rule_bias: from_fn(|i| f32::from(u8::from(!is_top_left(right[i], up[i])))),
+            start: map3(start, |value| (value * sign) as f32),
+            right: map3(right, |step| (step * PIXEL) as f32),
+            up: map3(up, |step| (step * PIXEL) as f32),
+            fill_rule_bias: map3([0, 1, 2], |i| f32::from(u8::from(!is_top_left(right[i], up[i])))),
             one_over_area: 1.0 / (area.abs() as f32),
         }
     }

@@ -13,6 +13,7 @@ use crate::area::Winding;
 use crate::clip::{NdcVertex, clip_triangle, fan};
 use crate::exact::{cut_to_guard_band, is_in_guard_band};
 use crate::mesh::Mesh;
+use crate::real::map3;
 use crate::rect::Rect;
 use crate::shader::Shader;
 use crate::state::RenderState;
@@ -182,7 +183,7 @@ fn assemble<S: Shader<N>, const N: usize>(
     } else if !beyond_a_plane {
         let projection = &context.projection;
         // Clipping is rare, and needs the vertex as it was: shade it once more.
-        let unclipped = triangle.map(|vertex| shader.vertex(&mesh.vertices()[vertex]));
+        let unclipped = map3(triangle, |vertex| shader.vertex(&mesh.vertices()[vertex]));
         let polygon = clip_triangle(unclipped, &projection.planes, projection.state.clip_test);
         let divided: ArrayVec<NdcVertex<N>, 9> = polygon.into_iter().map(NdcVertex::from).collect();
         for piece in fan(divided) {

@@ -18,7 +18,7 @@ use crate::depth::DepthTest;
 use crate::exact::edge::gradients_between;
 use crate::interpolate::{Interpolation, Projected};
 use crate::merge::{Blend, Merge, Rounding};
-use crate::real::{Mask, Real};
+use crate::real::{Mask, Real, map3};
 use crate::rect::Rect;
 use crate::shader::{Paint, Shaded, Shader};
 use crate::state::RenderState;
@@ -448,6 +448,6 @@ fn opaque<I: InstructionSet>(instructions: I, color: Paint<I::Lanes>) -> WordsOf
 }
 
 fn blended(blend: Blend, color: [f32; 4], there: Color) -> Color {
-    let there = there.to_f64().map(|channel| channel as f32);
+    let there = map3(there.to_f64(), |channel| channel as f32);
     Rounding::Nearest.color(blend.apply(color, there))
 }

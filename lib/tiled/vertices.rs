@@ -18,6 +18,7 @@ use crate::exact::GUARD_BAND;
 use crate::exact::edge::{FARTHEST, SUBPIXELS, Subpixel, snap};
 use crate::interpolate::Interpolation;
 use crate::mesh::Mesh;
+use crate::real::{each, map3};
 use crate::rect::Rect;
 use crate::shader::Shader;
 use crate::state::RenderState;
@@ -147,7 +148,7 @@ impl Vertices {
         triangle: &[NdcVertex<N>; 3],
         projection: &Projection<'_>,
     ) -> Option<[SnappedPosition; 3]> {
-        let [a, b, c] = triangle.each_ref().map(|vertex| projection.snapped_position(vertex));
+        let [a, b, c] = map3(triangle.each_ref(), |vertex| projection.snapped_position(vertex));
         let positions = [a?, b?, c?];
         let first = self.packed.len();
         self.positions.extend(positions);
@@ -166,13 +167,13 @@ impl Vertices {
     /// Where vertices are.
     #[inline(always)]
     pub(super) fn positions(&self, triangle: [usize; 3]) -> [SnappedPosition; 3] {
-        triangle.map(|vertex| self.positions[vertex])
+        map3(triangle, |vertex| self.positions[vertex])
     }
 
     /// What each of them lies outside of.
     #[inline(always)]
     pub(super) fn outside(&self, triangle: [usize; 3]) -> [u8; 3] {
-        triangle.map(|vertex| self.outside[vertex])
+        map3(triangle, |vertex| self.outside[vertex])
     }
 
     /// A triangle of vertices with so many varyings.
@@ -184,7 +185,7 @@ impl Vertices {
         let blocks = blocks_of(N);
         Triangle {
             positions: self.positions(triangle),
-            packed: triangle.map(|vertex| &self.packed[vertex * blocks..(vertex + 1) * blocks]),
+            packed: map3(triangle, |vertex| &self.packed[vertex * blocks..(vertex + 1) * blocks]),
         }
     }
 }
@@ -306,9 +307,9 @@ impl<'a> Projection<'a> {
         let y = whole(instructions, rounded(instructions, y * subpixels));
         let ndc = [ndc[0].to_array(), ndc[1].to_array(), ndc[2].to_array()];
         (
-            from_fn(|i| [x[i], y[i]]),
+            each([[0; 2]; AT_A_TIME], |i, _| [x[i], y[i]]),
             outside.to_array().map(|bits| bits.to_bits() as u8),
-            from_fn(|i| dvec3(ndc[0][i], ndc[1][i], ndc[2][i])),
+            each([DVec3::ZERO; AT_A_TIME], |i, _| dvec3(ndc[0][i], ndc[1][i], ndc[2][i])),
         )
     }
     // ANCHOR_END: project_vertices

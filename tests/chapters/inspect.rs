@@ -1,6 +1,6 @@
 //! The histories of pixels: what is reported is what stands in the picture, and its numbers are those of the formulas.
 
-use crate::chapters::{CHAPTERS, variant, variants};
+use crate::chapters::{CHAPTERS, half_size, variant, variants};
 use crate::sizes::GRID;
 use rasterbook::figure::{DrawOptions, RasterizerChoice, Variant};
 use rasterbook::inspect::{History, Steps, histories, history};
@@ -33,12 +33,12 @@ fn what_is_reported_is_what_stands_in_the_picture_and_no_event_is_unknown() {
     let rows: Vec<_> = variants().collect();
     rows.par_iter().for_each(|&(chapter, variant)| {
         let subject = variant.subject().expect("assets");
-        let own = variant.options(subject.as_ref());
+        let own = DrawOptions { size: half_size(variant), ..variant.options(subject.as_ref()) };
         let both = [RasterizerChoice::Scanline, RasterizerChoice::Exact];
         let choices = variant.rasterizer.map_or(vec![own.rasterizer], |_| both.to_vec());
         for rasterizer in choices {
             let options = DrawOptions { rasterizer, ..own.clone() };
-            for history in histories(chapter, variant, &options, pixels(variant.size)) {
+            for history in histories(chapter, variant, &options, pixels(options.size)) {
                 check(&history, variant);
             }
         }
