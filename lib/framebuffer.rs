@@ -154,7 +154,11 @@ impl Framebuffer {
     /// row first.
     #[must_use]
     pub fn rgb_from_top(&self) -> Vec<u8> {
-        self.rows_from_top().flatten().flat_map(|color| color.channels()).collect()
+        let mut channels = Vec::with_capacity(3 * self.pixels.len());
+        for color in self.rows_from_top().flatten() {
+            channels.extend_from_slice(&color.channels());
+        }
+        channels
     }
 
     /// Writes the picture as a PPM file (binary, `P6`): a line of text, then three bytes for each
@@ -176,8 +180,7 @@ impl Framebuffer {
     pub fn fingerprint(&self) -> u64 {
         let mix = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3);
         let size = [self.width, self.height].map(u32::to_le_bytes);
-        let pixels = self.rows_from_top().flatten().flat_map(|color| color.channels());
-        size.into_iter().flatten().chain(pixels).fold(0xcbf2_9ce4_8422_2325, mix)
+        size.into_iter().flatten().chain(self.rgb_from_top()).fold(0xcbf2_9ce4_8422_2325, mix)
     }
 }
 

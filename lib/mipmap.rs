@@ -13,13 +13,12 @@
 //! assert_eq!(maps.trilinear([0.3, 0.3], 1.0, AddressMode::Repeat), [128.0; 3]); // the mean
 //! ```
 
-use std::array::from_fn;
 use std::sync::Arc;
 
 use crate::color::Color;
 use crate::interpolate::linear;
 use crate::merge::Rounding;
-use crate::real::{Real, map3};
+use crate::real::{Real, each, map3};
 use crate::texture::{AddressMode, Texture, bilinear};
 
 /// A texture and its copies, each half as wide and high as the one before, down to one texel.
@@ -139,10 +138,9 @@ fn halved(texture: &Texture) -> Texture {
     let pair = |i: u32, count: u32| [2 * i, 2 * i + 1].map(|i| i.min(count - 1) as usize);
     let mean = |x: u32, y: u32| {
         let [columns, rows] = [pair(x, texture.width()), pair(y, texture.height())];
-        let four =
-            [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j): (usize, usize)| texture.texel(columns[i], rows[j]));
-        let sum: [f64; 3] = from_fn(|k| four.iter().map(|texel| texel[k]).sum());
-        Rounding::Nearest.color(sum.map(|sum| sum / 4.0))
+        let [a, b] = [texture.texel(columns[0], rows[0]), texture.texel(columns[1], rows[0])];
+        let [c, d] = [texture.texel(columns[0], rows[1]), texture.texel(columns[1], rows[1])];
+        Rounding::Nearest.color(each(a, |k, a| (a + b[k] + c[k] + d[k]) / 4.0))
     };
     let texels: Vec<Color> =
         (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| mean(x, y)).collect();

@@ -156,8 +156,9 @@ fn palette_of(colors: &[(Channels, usize)]) -> Vec<Channels> {
 
 /// The place of the color that is nearest.
 fn nearest(palette: &[Channels], color: Channels) -> u8 {
-    let distance = |other: &Channels| -> u32 {
-        other.iter().zip(color).map(|(&a, b)| u32::from(a.abs_diff(b)) * u32::from(a.abs_diff(b))).sum()
+    let square = |a: u8, b: u8| u32::from(a.abs_diff(b)).pow(2);
+    let distance = |&[red, green, blue]: &Channels| {
+        square(red, color[0]) + square(green, color[1]) + square(blue, color[2])
     };
     (0..=255).zip(palette).min_by_key(|(_, other)| distance(other)).map_or(0, |(place, _)| place)
 }
