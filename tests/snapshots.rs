@@ -7,44 +7,42 @@
 mod pictures;
 #[path = "support/review.rs"]
 mod review;
+#[path = "support/trials.rs"]
+mod trials;
 
 use std::collections::BTreeSet;
+use std::error::Error;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use libtest_mimic::{Arguments, Failed, Trial};
 use pictures::Outcome;
 use rasterbook::program::PROGRAMS;
 use serde_json::Value;
+use trials::{Options, Trial};
 
-fn main() -> ExitCode {
+fn main() -> Result<ExitCode, Box<dyn Error>> {
     // A failed comparison is reported once, by its test.
     std::panic::set_hook(Box::new(|_| {}));
-    let arguments = Arguments::from_args();
+    let options = Options::from_args(std::env::args_os().skip(1));
     let accepted = Arc::new(Accepted::default());
-    let drawn = match all_pictures() {
-        Ok(drawn) => drawn,
-        Err(reason) => {
-            eprint_summary(&format!("The programs do not say what they can draw: {reason:?}\n"));
-            return ExitCode::FAILURE;
-        }
-    };
+    let drawn =
+        all_pictures().map_err(|reason| format!("the programs do not say what they can draw: {reason}"))?;
     let trial = |picture: &Picture| picture.clone().trial(Arc::clone(&accepted));
     let mut trials: Vec<Trial> = drawn.iter().map(trial).collect();
     let wanted = names_of_files(&drawn);
-    trials.push(Trial::test("no_snapshot_without_a_variant", move || no_orphan(&wanted)));
-    let conclusion = libtest_mimic::run(&arguments, trials);
-    if arguments.list {
-        return conclusion.exit_code();
+    trials.push(Trial::new("no_snapshot_without_a_variant", move || no_orphan(&wanted)));
+    let conclusion = trials::run(&options, &trials)?;
+    if options.is_list {
+        return Ok(conclusion);
     }
     match review_page(&drawn) {
         Ok(page) => eprint_summary(&(accepted.summary() + &page)),
         Err(error) => eprint_summary(&format!("The page for the review cannot be written: {error}\n")),
     }
-    conclusion.exit_code()
+    Ok(conclusion)
 }
 
 #[expect(clippy::print_stderr, reason = "the report of a test program")]
@@ -139,7 +137,7 @@ fn path_of(program: &str) -> PathBuf {
 }
 
 /// What the programs say that they can draw.
-fn all_pictures() -> Result<Vec<Picture>, Failed> {
+fn all_pictures() -> Result<Vec<Picture>, Box<dyn Error>> {
     let mut pictures = vec![];
     for program in &PROGRAMS {
         let output = Command::new(path_of(program.name)).args(["--list", "--format", "json"]).output()?;
@@ -181,12 +179,12 @@ fn pictures_of(program: &'static str, variant: &Value) -> Vec<Picture> {
 
 impl Picture {
     fn trial(self, accepted: Arc<Accepted>) -> Trial {
-        Trial::test(self.name.clone(), move || {
+        Trial::new(self.name.clone(), move || {
             let png = match self.draw() {
                 Ok(png) => png,
                 Err(reason) => {
                     pictures::report_undrawn(&self.name, &format!("no new picture was drawn: {reason}"))?;
-                    return Err(reason.into());
+                    return Err(reason);
                 }
             };
             accepted.count(pictures::assert_picture(&self.name, &png)?);
@@ -236,10 +234,12 @@ fn names_of_files(pictures: &[Picture]) -> BTreeSet<String> {
     pictures.iter().flat_map(names).collect()
 }
 
-fn no_orphan(wanted: &BTreeSet<String>) -> Result<(), Failed> {
+fn no_orphan(wanted: &BTreeSet<String>) -> Result<(), String> {
+    let folder = pictures::snapshot_folder();
+    let failure = |error| format!("{}: {error}", folder.display());
     let mut orphans = Vec::new();
-    for entry in std::fs::read_dir(pictures::snapshot_folder())? {
-        let name = entry?.file_name().to_string_lossy().into_owned();
+    for entry in std::fs::read_dir(&folder).map_err(failure)? {
+        let name = entry.map_err(failure)?.file_name().to_string_lossy().into_owned();
         let is_pending = name.contains(".snap.new");
         if !is_pending && !wanted.contains(&name) {
             if let Some(picture) = name.strip_suffix(".snap.png") {
@@ -251,6 +251,5 @@ fn no_orphan(wanted: &BTreeSet<String>) -> Result<(), Failed> {
     if orphans.is_empty() {
         return Ok(());
     }
-    Err(format!("in tests/snapshots, but drawn by no variant (remove or rename): {}", orphans.join(", "))
-        .into())
+    Err(format!("in tests/snapshots, but drawn by no variant (remove or rename): {}", orphans.join(", ")))
 }
