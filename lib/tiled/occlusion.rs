@@ -81,3 +81,49 @@ pub(super) fn depth_range(coverage: &Coverage, triangle: Triangle<'_>, rect: Rec
     [depths.into_iter().fold(f64::MAX, f64::min) - room, depths.into_iter().fold(f64::MIN, f64::max) + room]
 }
 // ANCHOR_END: occlusion
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::clip::NdcVertex;
+    use crate::state::RenderState;
+    use crate::tiled::vertices::{Projection, Vertices};
+    use glam::dvec3;
+
+    /// The range of depths in a rectangle of a triangle with these depths at (0, 0), (128, 0) and (0, 128).
+    fn range(depths: [f64; 3], rect: Rect) -> [f64; 2] {
+        let ndc = [(-1.0, -1.0), (3.0, -1.0), (-1.0, 3.0)];
+        let ndc = [0, 1, 2].map(|i| NdcVertex {
+            position: dvec3(ndc[i].0, ndc[i].1, depths[i]),
+            w: 1.0,
+            varyings: [],
+        });
+        let (mut vertices, state) = (Vertices::default(), RenderState::default());
+        vertices.push(&ndc, &Projection::new(&state, Rect::sized(64, 64))).expect("near enough");
+        let triangle = vertices.triangle::<0>([0, 1, 2]);
+        depth_range(&coverage_of(triangle).expect("an area"), triangle, rect)
+    }
+
+    #[test]
+    fn depths_are_between_those_of_the_outermost_centers() {
+        let rect = Rect { left: 3, bottom: 7, right: 20, top: 30 };
+        let depth = |x: f64, y: f64| 0.5 + (0.25 * y - 0.125 * x) / 128.0;
+        let [least, greatest] = range([0.5, 0.375, 0.75], rect);
+        // The greatest of all numbers in the sum, and of each sixteen roundings of single precision.
+        let room = (0.5 + 0.125 + 0.25) * 16.0 * f64::from(f32::EPSILON);
+        assert!((least - (depth(19.5, 7.5) - room)).abs() < 1e-15, "{least}");
+        assert!((greatest - (depth(3.5, 29.5) + room)).abs() < 1e-15, "{greatest}");
+    }
+
+    #[test]
+    fn of_depths_without_measure_nothing_is_said() {
+        let one = Rect::sized(1, 1);
+        let nothing = [f64::NEG_INFINITY, f64::INFINITY];
+        for odd in [2.0 * FARTHEST, -2.0 * FARTHEST, f64::NAN, f64::INFINITY] {
+            assert_eq!(range([odd, 0.0, 0.0], one), nothing, "{odd}");
+            assert_eq!(range([0.0, odd, 0.0], one), nothing, "{odd}");
+            assert_eq!(range([0.0, 0.0, odd], one), nothing, "{odd}");
+        }
+        assert_ne!(range([0.0, 0.0, FARTHEST / 2.0], one), nothing);
+    }
+}
