@@ -163,3 +163,23 @@ pub(super) fn fragment_fields(fragment: &Fragment) -> Vec<Field> {
     fields.push(field("verdict", "fragment", Value::Text(verdict)));
     fields
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_area_says_the_winding() {
+        for (area, winding) in [(2.0, "counter-clockwise"), (-2.0, "clockwise"), (0.0, "none")] {
+            let fields = facing(area, "area");
+            assert!(matches!(&fields[0].value, Value::Number(number) if *number == area));
+            assert!(matches!(&fields[1].value, Value::Text(text) if text == winding), "{area}");
+        }
+    }
+
+    #[test]
+    fn planes_have_names() {
+        assert_eq!(plane_name(&Plane::NEAR_ZERO), "near, z ≥ 0");
+        assert_eq!(plane_name(&Plane::in_front(0.5)), "near, ω ≥ 0.5");
+    }
+}

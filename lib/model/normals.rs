@@ -353,7 +353,9 @@ mod tests {
     fn a_sheet_is_two_faces_that_turn_against_each_other() {
         let paired = |faces: &[[u32; 3]]| {
             let mut normals = SmoothNormals::default();
-            [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::X * 2.0].map(|place| normals.number(place));
+            for place in [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::X * 2.0] {
+                normals.number(place);
+            }
             faces.iter().for_each(|face| normals.add(face));
             normals.paired_faces()
         };

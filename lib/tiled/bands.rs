@@ -129,6 +129,13 @@ mod tests {
     }
 
     #[test]
+    fn pixels_are_counted_from_the_lower_left_one() {
+        let rect = Rect { left: 3, bottom: 32, right: 8, top: 64 };
+        let band = Band { rect, stride: 5, to_next_band: 0, colors: &mut [], depths: &mut [] };
+        assert_eq!([(3, 32), (4, 32), (3, 33), (7, 63)].map(|pixel| band.index(pixel)), [0, 1, 5, 159]);
+    }
+
+    #[test]
     fn a_very_short_band_is_drawn_in_a_copy() {
         for width in [1, 7, 8, 9] {
             let picture = Rect::sized(width, 1);
