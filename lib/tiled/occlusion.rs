@@ -125,7 +125,7 @@ mod tests {
     fn what_covers_a_tile_hides_what_is_behind_it() {
         let (state, tile) = (RenderState::default(), Rect::sized(64, 16));
         // They cover the last pixel, and would not cover another one.
-        let [near, far] = [0.25, 0.5].map(|depth| half(1.98, depth));
+        let [near, far] = [0.25, 0.5].map(|depth| half(1.965, depth));
         for triangles in [[near, far], [far, near]] {
             let depth = occluder(&state, tile, &triangles);
             assert!(depth > 0.25 && depth < 0.2501, "{depth}: the nearer one, and room for rounding");
