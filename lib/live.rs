@@ -578,6 +578,7 @@ mod tests {
             Variant::with_pipeline("moving", moving, "-")
                 .size(8, 8)
                 .animated(Animation { frames: 3, rate: 7 })
+                .remedied_by("turned")
                 .knobs(&[Knob::whole("more", 0, [0, 1], "", "-")]),
             Variant::with_pipeline("turned", |_| {}, "-").size(40, 30).knobs(&[
                 Knob::number("azimuth", 170.0, [-180.0, 180.0], "°", "-"),
@@ -645,6 +646,9 @@ mod tests {
             framed.command(),
             "cargo run --bin ch00 -- moving --frame 2 --rasterizer exact --overdraw"
         );
+        let all = [Event::Variant(2), choice, frame, Event::Resize((9, 9)), Event::Show(View::Remedy)];
+        let all = play(live(), &all).command();
+        assert_eq!(all, "cargo run --bin ch00 -- turned --frame 2 --size 9x9 --rasterizer exact");
         assert_eq!(play(live(), &[Event::Variant(2), Event::Frame(9)]).scene().frame, 2, "the last one");
         assert_eq!(play(live(), &[Event::Frame(9)]).scene().frame, 0, "it has no frames");
         assert_eq!(play(live(), &[choice]).command(), "cargo run --bin ch00 -- wrong", "it has no choice");
@@ -773,6 +777,8 @@ mod tests {
         let near = play(live(), &[Event::Magnify(1, (5, 6)), Event::Magnify(2, (5, 6))]);
         assert_eq!(near.pixel_at((5, 6)), Some((5, 6)), "what is under the pointer stays there");
         assert_eq!(near.zoom().map(|zoom| zoom.factor), Some(4));
+        let nearest = play(live(), &[Event::Magnify(99, (5, 6))]);
+        assert_eq!(nearest.zoom().map(|zoom| zoom.factor), Some(Zoom::MAX_FACTOR));
         let picture = near.picture();
         assert_eq!((picture.width(), picture.height()), (40, 30), "4× as large, cut at the upper border");
         let (_, white) = seen(&picture);
