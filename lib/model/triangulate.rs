@@ -245,79 +245,72 @@ mod tests {
         }
     }
 
+    /// Concave polygons, counter-clockwise, and their areas.
+    const CONCAVE: [(&[[f64; 2]], f64); 6] = [
+        (&[[0.0, 0.0], [2.0, 1.0], [4.0, 0.0], [2.0, 4.0]], 6.0),
+        // The same, each corner twice.
+        (
+            &[[0.0, 0.0], [0.0, 0.0], [2.0, 1.0], [2.0, 1.0], [4.0, 0.0], [4.0, 0.0], [2.0, 4.0], [2.0, 4.0]],
+            6.0,
+        ),
+        // A corner touches another side from outside, at (2, 1).
+        (
+            &[
+                [0.0, 0.0],
+                [4.0, 0.0],
+                [4.0, 1.0],
+                [1.0, 1.0],
+                [1.0, 3.0],
+                [1.5, 3.0],
+                [2.0, 1.0],
+                [3.0, 3.0],
+                [3.0, 4.0],
+                [0.0, 4.0],
+            ],
+            10.5,
+        ),
+        (&[[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [2.0, 1.0], [0.0, 4.0]], 10.0),
+        // A comb, with corners on straight lines.
+        (
+            &[
+                [0.0, 0.0],
+                [1.0, 0.0],
+                [3.0, 0.0],
+                [5.0, 0.0],
+                [5.0, 3.0],
+                [4.0, 3.0],
+                [4.0, 1.0],
+                [3.0, 1.0],
+                [3.0, 3.0],
+                [2.0, 3.0],
+                [2.0, 1.0],
+                [1.0, 1.0],
+                [1.0, 3.0],
+                [0.0, 3.0],
+            ],
+            11.0,
+        ),
+        // A square with a hole, bridged at (0, 0) to (1, 1).
+        (
+            &[
+                [0.0, 0.0],
+                [3.0, 0.0],
+                [3.0, 3.0],
+                [0.0, 3.0],
+                [0.0, 0.0],
+                [1.0, 1.0],
+                [1.0, 2.0],
+                [2.0, 2.0],
+                [2.0, 1.0],
+                [1.0, 1.0],
+            ],
+            8.0,
+        ),
+    ];
+
     #[test]
     fn a_concave_polygon_is_covered_once_from_wherever_it_begins() {
-        let shapes: [(&[[f64; 2]], f64); 6] = [
-            (&[[0.0, 0.0], [2.0, 1.0], [4.0, 0.0], [2.0, 4.0]], 6.0),
-            // The same, each corner twice.
-            (
-                &[
-                    [0.0, 0.0],
-                    [0.0, 0.0],
-                    [2.0, 1.0],
-                    [2.0, 1.0],
-                    [4.0, 0.0],
-                    [4.0, 0.0],
-                    [2.0, 4.0],
-                    [2.0, 4.0],
-                ],
-                6.0,
-            ),
-            // A corner touches another side from outside, at (2, 1).
-            (
-                &[
-                    [0.0, 0.0],
-                    [4.0, 0.0],
-                    [4.0, 1.0],
-                    [1.0, 1.0],
-                    [1.0, 3.0],
-                    [1.5, 3.0],
-                    [2.0, 1.0],
-                    [3.0, 3.0],
-                    [3.0, 4.0],
-                    [0.0, 4.0],
-                ],
-                10.5,
-            ),
-            (&[[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [2.0, 1.0], [0.0, 4.0]], 10.0),
-            // A comb, with corners on straight lines.
-            (
-                &[
-                    [0.0, 0.0],
-                    [1.0, 0.0],
-                    [3.0, 0.0],
-                    [5.0, 0.0],
-                    [5.0, 3.0],
-                    [4.0, 3.0],
-                    [4.0, 1.0],
-                    [3.0, 1.0],
-                    [3.0, 3.0],
-                    [2.0, 3.0],
-                    [2.0, 1.0],
-                    [1.0, 1.0],
-                    [1.0, 3.0],
-                    [0.0, 3.0],
-                ],
-                11.0,
-            ),
-            // A square with a hole, bridged at (0, 0) to (1, 1).
-            (
-                &[
-                    [0.0, 0.0],
-                    [3.0, 0.0],
-                    [3.0, 3.0],
-                    [0.0, 3.0],
-                    [0.0, 0.0],
-                    [1.0, 1.0],
-                    [1.0, 2.0],
-                    [2.0, 2.0],
-                    [2.0, 1.0],
-                    [1.0, 1.0],
-                ],
-                8.0,
-            ),
-        ];
-        for (shape, area) in shapes {
+        for (shape, area) in CONCAVE {
             for start in 0..shape.len() {
                 let mut turned = shape.to_vec();
                 turned.rotate_left(start);
@@ -328,7 +321,7 @@ mod tests {
                         "{turned:?}: {triangles:?} {covered}"
                     );
                     assert_eq!(triangles.len(), shape.len() - 2);
-                    // A corner that were in none of them could let a crack open beside it.
+                    // Each corner is one of a triangle that has an area: else a crack could open beside it.
                     let seen = |place: &[f64; 2]| {
                         let is_seen = |[a, b, c]: &[usize; 3]| {
                             let places = [turned[*a], turned[*b], turned[*c]];

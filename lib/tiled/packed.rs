@@ -177,6 +177,10 @@ mod tests {
     #[test]
     fn packed_as_one_by_one() {
         // One block, a full one, and one number more; two full ones, and one number more.
-        (check::<0>(), check::<6>(), check::<7>(), check::<14>(), check::<15>());
+        check::<0>();
+        check::<6>();
+        check::<7>();
+        check::<14>();
+        check::<15>();
     }
 }
