@@ -578,6 +578,7 @@ mod tests {
             Variant::with_pipeline("moving", moving, "-")
                 .size(8, 8)
                 .animated(Animation { frames: 3, rate: 7 })
+                .remedied_by("turned")
                 .knobs(&[Knob::whole("more", 0, [0, 1], "", "-")]),
             Variant::with_pipeline("turned", |_| {}, "-").size(40, 30).knobs(&[
                 Knob::number("azimuth", 170.0, [-180.0, 180.0], "°", "-"),
@@ -645,6 +646,9 @@ mod tests {
             framed.command(),
             "cargo run --bin ch00 -- moving --frame 2 --rasterizer exact --overdraw"
         );
+        let all = [Event::Variant(2), choice, frame, Event::Resize((9, 9)), Event::Show(View::Remedy)];
+        let all = play(live(), &all).command();
+        assert_eq!(all, "cargo run --bin ch00 -- turned --frame 2 --size 9x9 --rasterizer exact");
         assert_eq!(play(live(), &[Event::Variant(2), Event::Frame(9)]).scene().frame, 2, "the last one");
         assert_eq!(play(live(), &[Event::Frame(9)]).scene().frame, 0, "it has no frames");
         assert_eq!(play(live(), &[choice]).command(), "cargo run --bin ch00 -- wrong", "it has no choice");
@@ -689,6 +693,33 @@ mod tests {
     }
 
     #[test]
+    fn a_line_says_what_is_shown() {
+        let status = |events: &[Event]| play(live(), events).status();
+        assert_eq!(status(&[Event::Show(View::Difference)]), "wrong | right: difference · level = 100");
+        assert_eq!(status(&[Event::Show(View::Overdraw)]), "wrong: overdraw · level = 100");
+        let (frame, choice) = (Event::Frame(2), Event::Rasterizer(RasterizerChoice::Exact));
+        assert_eq!(
+            status(&[Event::Variant(2), frame, choice, Event::Magnify(3, (0, 0))]),
+            "moving · more = 0 · frame 2 · exact · 4×"
+        );
+    }
+
+    #[test]
+    fn an_event_says_whether_the_picture_may_have_changed() {
+        let changed = |mut live: Live<'static>, event| live.apply(event).expect("no model");
+        for event in [Event::Variant(0), Event::NextVariant(0), Event::Turn(1), Event::Tick, Event::Reset] {
+            assert!(changed(live(), event), "{event:?}");
+        }
+        for event in [Event::Variant(9), Event::NextKnob(1), Event::Press((5, 7)), Event::Release] {
+            assert!(!changed(live(), event), "{event:?}");
+        }
+        let drag = Event::Drag((20, 10));
+        assert!(changed(play(live(), &[Event::Press((5, 7))]), drag), "a point");
+        assert!(!changed(play(live(), &[Event::Press((30, 20))]), drag), "nothing was near");
+        assert!(!changed(live(), drag), "the button is not down");
+    }
+
+    #[test]
     fn views_are_the_remedy_the_difference_and_the_overdraw() {
         let shown = |view| play(live(), &[Event::Turn(10), Event::Show(view)]);
         assert_eq!(seen(&shown(View::Remedy).picture()), (120, Some((4, 6))), "with the same knobs");
@@ -698,6 +729,9 @@ mod tests {
         assert_eq!((marked.get(4, 6), marked.get(5, 6)), (Some(magenta), Some(magenta)));
         assert_ne!(marked.get(6, 6), Some(magenta));
         assert_ne!(shown(View::Overdraw).picture(), live().picture());
+        let history = |view| shown(view).history((4, 6)).to_string();
+        assert!(history(View::Remedy).starts_with("ch00 right level=120"), "of what is shown");
+        assert!(history(View::Difference).starts_with("ch00 wrong level=120"));
         let twice = play(shown(View::Remedy), &[Event::Show(View::Remedy)]);
         assert_eq!(twice.view(), View::Itself);
         let without = play(live(), &[Event::Variant(1), Event::Show(View::Remedy)]);
@@ -742,6 +776,9 @@ mod tests {
     fn single_pixels_are_shown_and_found() {
         let near = play(live(), &[Event::Magnify(1, (5, 6)), Event::Magnify(2, (5, 6))]);
         assert_eq!(near.pixel_at((5, 6)), Some((5, 6)), "what is under the pointer stays there");
+        assert_eq!(near.zoom().map(|zoom| zoom.factor), Some(4));
+        let nearest = play(live(), &[Event::Magnify(99, (5, 6))]);
+        assert_eq!(nearest.zoom().map(|zoom| zoom.factor), Some(Zoom::MAX_FACTOR));
         let picture = near.picture();
         assert_eq!((picture.width(), picture.height()), (40, 30), "4× as large, cut at the upper border");
         let (_, white) = seen(&picture);

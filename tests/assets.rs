@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use rasterbook::figure::assets::{generate, made_texture, model, texture};
+use rasterbook::figure::assets::{generate, model, texture};
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("assets")
@@ -53,15 +53,6 @@ fn nothing_else_is_there_and_each_has_its_line() {
         .map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned())
         .collect();
     assert_eq!(there, wanted);
-}
-
-/// In a page of the book the textures are made, and not decoded.
-#[test]
-fn what_is_made_is_what_is_read() {
-    for (name, _) in generate().into_iter().filter(|(name, _)| name.ends_with(".png")) {
-        assert_eq!(made_texture(name), Some(texture(name).expect("an asset")), "{name}");
-    }
-    assert_eq!(made_texture("cube.obj"), None);
 }
 
 #[test]

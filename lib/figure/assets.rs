@@ -414,3 +414,34 @@ fn wood() -> Framebuffer {
     }
     picture
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_made_is_what_is_read() {
+        assert_eq!(FILES.map(|(name, _)| name), NAMES);
+        for (name, bytes) in FILES {
+            // In a page of the book the textures are made, and not decoded.
+            let is_same = match model_text(name) {
+                Some(text) => text.as_bytes() == bytes,
+                None => made_texture(name) == texture(name).ok(),
+            };
+            assert!(is_same, "{name}");
+        }
+        assert_eq!(made_texture("cube.obj"), None);
+    }
+
+    #[test]
+    fn what_has_been_read_is_known_by_its_name() {
+        let known = Mutex::new(Vec::new());
+        let read = |name: &'static str| once(&known, name, || Ok(name.len()));
+        assert_eq!([read("a").ok(), read("bc").ok(), read("a").ok()], [Some(1), Some(2), Some(1)]);
+        let again = once(&known, "bc", || Err(missing("bc")));
+        assert_eq!(again.ok(), Some(2), "not read once more");
+        let failed = once(&known, "d", || Err(missing("d"))).expect_err("is not there");
+        assert_eq!(failed.to_string(), "d: is not in assets/");
+        assert_eq!(read("d").ok(), Some(1), "what failed is tried again");
+    }
+}

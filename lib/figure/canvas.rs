@@ -183,3 +183,18 @@ impl Canvas {
         self.draw(mesh, shader, &RenderState { load: LoadOp::Clear, ..*state });
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn panels_lie_side_by_side_where_the_scene_is() {
+        let framebuffer = Framebuffer::new(200, 100);
+        let canvas = Canvas::new(&framebuffer, (50, 50), 0, RasterizerChoice::Scanline, None);
+        assert_eq!(canvas.viewport(), Viewport { x: 50.0, y: 0.0, width: 100.0, height: 100.0 });
+        let panels = [0, 1, 3].map(|index| canvas.panel(index, 4));
+        let expected = [50.0, 75.0, 125.0].map(|x| Viewport { x, y: 0.0, width: 25.0, height: 100.0 });
+        assert_eq!(panels, expected);
+    }
+}

@@ -371,3 +371,19 @@ impl Variant {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_a_picture_of_a_model_has_a_subject() {
+        let of_model = Variant::of_model("model", |_, _| {}, ["cube.obj", "wood.png"], "-");
+        let subject = of_model.subject().expect("in assets/").expect("a model");
+        assert_eq!(subject.model.triangle_count(), 12);
+        assert_eq!(subject.texture.map(|texture| texture.width()), Some(128));
+        let missing = Variant::of_model_in_plane("missing", |_, _| {}, ["teapot.obj", "wood.png"], "-");
+        assert!(missing.subject().is_err());
+        assert!(Variant::new("plain", |_| {}, "-").subject().expect("no file").is_none());
+    }
+}

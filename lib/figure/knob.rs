@@ -304,6 +304,8 @@ pub(super) mod tests {
         assert_eq!(stepped(0, 3), Value::Number(33.0));
         let steps = [80.0, 360.0, 1.0, 120.0, 59.0].map(|range: f64| round_step(range / 60.0));
         assert_eq!(steps, [1.0, 5.0, 0.01, 2.0, 0.5]);
+        let angle = Knob::number("angle", 0.0, [-180.0, 180.0], "°", "-");
+        assert_eq!(angle.stepped(Value::Number(30.0), 2), Value::Number(40.0));
         assert_eq!(stepped(0, 1000), Value::Number(80.0));
         assert_eq!(stepped(1, -9), Value::Whole(1));
         assert_eq!(stepped(2, 1), Value::Choice(1));
@@ -311,5 +313,7 @@ pub(super) mod tests {
         assert_eq!((stepped(3, 1), stepped(3, 2)), (Value::Switch(false), Value::Switch(true)));
         assert_eq!(stepped(4, 2), Value::Point(dvec2(5.5, 4.0)));
         assert_eq!(stepped(5, 1), Value::Color(Color::rgb(255, 16, 16)));
+        let choices = [1, 9].map(|index| KNOBS[2].shown(Value::Choice(index)));
+        assert_eq!(choices, ["top-left", "9"], "of what has no name, the number");
     }
 }

@@ -248,6 +248,7 @@ mod tests {
     #[test]
     fn texts_are_values_or_refused() {
         let mut knobs = Knobs::new(KNOBS, (64, 48));
+        assert!(!knobs.is_empty() && Knobs::new(&[], (64, 48)).is_empty());
         for good in ["tilt=0", "tilt=80", "bits=8", "rule=top-left", "clip=off", "p=64,48", "paint=#00ff7f"] {
             assert_eq!(knobs.set(good), Ok(()), "{good}");
         }

@@ -252,6 +252,8 @@ mod tests {
             assert_eq!(part.get(left + corner.0, bottom + corner.1), Some(Color::RED));
             assert_eq!(part.get(left - 1, bottom + corner.1), frame.get(left - 1, bottom + corner.1));
         }
+        let middle = Zoom { factor: 32, center: None }.part(picture.rect());
+        assert_eq!(middle, Rect { left: 300, bottom: 225, right: 340, top: 255 }, "1280 × 960 pixels of it");
         let same = Zoom { factor: 1, center: Some((0, 0)) };
         assert_eq!(zoomed(&picture, same).rect(), picture.rect(), "no frame: it might not fit");
     }
@@ -263,7 +265,7 @@ mod tests {
         assert_eq!(count, 2);
         assert_eq!(marked.get(2, 2), Some(Color::rgb(255, 0, 255)));
         assert_eq!(marked.get(3, 0), Some(Color::rgb(255, 0, 255)));
-        assert_ne!(marked.get(1, 1), Some(Color::rgb(255, 0, 255)));
+        assert_eq!(marked.get(1, 1), Some(Color::gray(15)), "a quarter of the brightness of red");
         assert!(difference(&dots(4, 4, &[]), &dots(4, 5, &[])).is_none());
     }
 

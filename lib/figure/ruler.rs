@@ -82,6 +82,7 @@ mod tests {
         let part = Rect { left: 18, bottom: 7, right: 24, top: 12 };
         let (frame, (left, bottom)) = ruler(part, 10);
         assert_eq!((frame.width() as i32, frame.height() as i32), (left + 60 + GAP, bottom + 50 + GAP));
+        assert_eq!((left, bottom), (GAP + label_width("10") + GAP + TICK, GAP + LABEL_HEIGHT + GAP + TICK));
         // Every column has a tick, that of column 20 is long.
         let right = frame.width() as i32;
         let short = inked(&frame, (left..right).map(|x| (x, bottom - 1)));
@@ -89,6 +90,20 @@ mod tests {
         assert_eq!(inked(&frame, (left..right).map(|x| (x, bottom - TICK))), [24, 25]);
         // The long one of the rows is that of row 10.
         assert_eq!(inked(&frame, (bottom..bottom + 50).map(|y| (left - TICK, y))), [34, 35]);
+    }
+
+    #[test]
+    fn numbers_have_their_middle_at_their_tick() {
+        let (frame, (left, bottom)) = ruler(Rect { left: 18, bottom: 7, right: 24, top: 12 }, 10);
+        // Of a 2, a 1 and a 0, the lowest row has three dots, and there is one between two digits.
+        let digits = |from: i32| [from..from + 6, from + 8..from + 14].into_iter().flatten();
+        let width = label_width("20");
+        let below = inked(&frame, (0..frame.width() as i32).map(|x| (x, GAP)));
+        let middle = left + 25;
+        assert_eq!(below, digits(middle - width / 2).map(|x| x as usize).collect::<Vec<_>>());
+        let middle = bottom + 35;
+        let beside = inked(&frame, (0..left - TICK).map(|x| (x, middle - LABEL_HEIGHT / 2)));
+        assert_eq!(beside, digits(GAP).map(|x| x as usize).collect::<Vec<_>>());
     }
 
     #[test]

@@ -360,3 +360,24 @@ impl Explainer {
         (self.primitive, self.is_open, self.is_hit_complete) = (None, false, true);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_that_follow_one_another_are_a_range() {
+        assert_eq!(ranges(&[1, 2, 3, 7, 9, 10]), "1–3, 7, 9–10");
+        assert_eq!(ranges(&[]), "");
+    }
+
+    #[test]
+    fn what_was_left_out_is_told_by_its_numbers() {
+        let mut explainer = Explainer::new((0, 0), Rect::sized(1, 1));
+        explainer.culled = vec![2, 3];
+        let entries: Vec<Entry> = explainer.left_out().collect();
+        assert_eq!(entries.len(), 1);
+        assert_eq!(entries[0].title, "culled, seen from behind or without area: 2 triangles, 2–3");
+        assert!(matches!(&entries[0].fields[0].value, Value::Numbers(numbers) if *numbers == [2.0, 3.0]));
+    }
+}

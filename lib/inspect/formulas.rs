@@ -163,3 +163,48 @@ pub(super) fn fragment_fields(fragment: &Fragment) -> Vec<Field> {
     fields.push(field("verdict", "fragment", Value::Text(verdict)));
     fields
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::color::Color;
+    use glam::dvec2;
+
+    #[test]
+    fn an_area_says_the_winding() {
+        for (area, winding) in [(2.0, "counter-clockwise"), (-2.0, "clockwise"), (0.0, "none")] {
+            let fields = facing(area, "area");
+            assert!(matches!(&fields[0].value, Value::Number(number) if *number == area));
+            assert!(matches!(&fields[1].value, Value::Text(text) if text == winding), "{area}");
+        }
+    }
+
+    #[test]
+    fn opacity_is_told_where_something_shines_through() {
+        let has_opacity = |opacity| {
+            let color = [1.0, 2.0, 3.0, opacity];
+            let verdict = Verdict::Drawn(Color::RED);
+            let fragment = Fragment { w: 1.0, depth: 0.5, varyings: vec![], color, verdict };
+            fragment_fields(&fragment).iter().any(|field| field.key == "opacity")
+        };
+        assert_eq!([0.5, 1.0].map(has_opacity), [true, false]);
+    }
+
+    #[test]
+    fn edge_functions_are_told_in_pixels() {
+        let triangle = [dvec2(0.5, 0.5), dvec2(8.5, 0.5), dvec2(0.5, 8.5)];
+        let fields = edge_fields(&Coverage::new(triangle).expect("an area"), None, (2, 1));
+        let Value::Table { rows, .. } = &fields[0].value else { panic!("no table: {fields:?}") };
+        let expected = [[0.5, 0.5, 40.0, 0.625], [8.5, 0.5, 16.0, 0.25], [0.5, 8.5, 8.0, 0.125]];
+        for (row, expected) in rows.iter().zip(expected) {
+            assert_eq!(row.1, expected.map(Some), "{}", row.0);
+        }
+        assert_eq!((rows.len(), fields.len()), (3, 1), "on no edge");
+    }
+
+    #[test]
+    fn planes_have_names() {
+        assert_eq!(plane_name(&Plane::NEAR_ZERO), "near, z ≥ 0");
+        assert_eq!(plane_name(&Plane::in_front(0.5)), "near, ω ≥ 0.5");
+    }
+}

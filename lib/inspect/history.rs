@@ -323,6 +323,42 @@ mod tests {
     use super::*;
 
     #[test]
+    fn numbers_have_as_many_digits_as_can_be_read() {
+        for (number, text) in [
+            (0.0, "0"),
+            (-0.0, "0"),
+            (1.5, "1.5000"),
+            (-999.999_94, "-999.9999"),
+            (1000.0, "1000.00"),
+            (9_999_999.0, "9999999.00"),
+            (1e7, "1.000e7"),
+            (-1e-4, "-0.0001"),
+            (9.9e-5, "9.900e-5"),
+            (f64::NEG_INFINITY, "-inf"),
+            // What is cut to a whole number must not look like the next one.
+            (101.999_999_999_999_5, "102-5e-13"),
+            (0.999_999_999_999_5, "1.0000"),
+            (101.999_99, "102.0000"),
+        ] {
+            assert_eq!(rounded(number), text);
+        }
+        assert_eq!([fitting(1.5, 7), fitting(1.5, 6)], ["1.5000", "1.5"], "with a blank before it");
+    }
+
+    #[test]
+    fn long_lines_are_wrapped_between_words() {
+        struct Wrapped(String);
+        impl fmt::Display for Wrapped {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                write_wrapped(f, "  ", 4, &self.0)
+            }
+        }
+        let text = Wrapped(["ab"; 40].join(" ")).to_string();
+        let lines: Vec<&str> = text.lines().collect();
+        assert_eq!(lines, [format!("  {}", ["ab"; 26].join(" ")), format!("    {}", ["ab"; 14].join(" "))]);
+    }
+
+    #[test]
     fn any_text_is_json() {
         let text = "a \"quoted\" \\ path,\ta bell \u{7} and\nλ";
         let read: serde_json::Value = serde_json::from_str(&text_json(text)).expect("JSON");

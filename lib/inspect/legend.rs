@@ -64,6 +64,21 @@ mod tests {
     }
 
     #[test]
+    fn colors_stand_side_by_side_in_their_order() {
+        let result = with_legend(Framebuffer::new(640, 480));
+        let cell = SWATCH + GAP + label_width("6+") + GAP;
+        for (left, (color, _)) in (GAP..).step_by(cell as usize).zip(HEAT) {
+            let (right, top) = (left + SWATCH - 1, GAP + LABEL_HEIGHT - 1);
+            for (x, y) in (GAP..=top).flat_map(|y| (left..=right).map(move |x| (x, y))) {
+                let is_outline = x == left || x == right || y == GAP || y == top;
+                let expected = if is_outline { OUTLINE } else { color };
+                assert_eq!(result.get(x, y), Some(expected), "({x}, {y})");
+            }
+            assert_eq!(result.get(right + 1, top), Some(PAPER));
+        }
+    }
+
+    #[test]
     fn every_color_is_below_a_picture_of_any_width() {
         for (size, expected) in [
             ((640, 480), (640, 480 + 22)),

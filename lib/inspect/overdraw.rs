@@ -86,3 +86,41 @@ impl Observer for Counter {
 }
 
 impl Probe for Counter {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::picture::draw_enlarged;
+
+    #[test]
+    fn every_write_is_counted_and_clearing_is_none() {
+        fn draw(picture: &mut Framebuffer) {
+            picture.clear(Color::RED);
+            for (x, writes) in [(1, 1), (2, 2), (3, 9)] {
+                (0..writes).for_each(|_| picture.set(x, 0, Color::GREEN));
+            }
+        }
+        let variant = Variant::new("often", draw, "").size(5, 1);
+        let (picture, lines) = overdraw(&variant, &variant.options(None));
+        let expected = [0, 1, 2, 6, 0].map(|count| Some(HEAT[count].0));
+        assert_eq!([0, 1, 2, 3, 4].map(|x| picture.get(x, 0)), expected);
+        assert_eq!((lines.len(), lines[1].as_str()), (1 + HEAT.len(), "0: black (2 pixels)"));
+        assert_eq!(
+            (lines[2].as_str(), lines[7].as_str()),
+            ("1: blue (1 pixel)", "6 or more: white (1 pixel)")
+        );
+    }
+
+    #[test]
+    fn of_an_enlarged_screen_a_write_is_a_block() {
+        fn draw(picture: &mut Framebuffer) {
+            draw_enlarged(picture, (2, 1), |screen| screen.set(1, 0, Color::GREEN));
+        }
+        let variant = Variant::new("large", draw, "").size(8, 6);
+        let (picture, _) = overdraw(&variant, &variant.options(None));
+        for (x, y) in picture.rect().rows().flat_map(|y| (0..8).map(move |x| (x, y))) {
+            let is_written = x >= 4 && (1..5).contains(&y);
+            assert_eq!(picture.get(x, y), Some(HEAT[usize::from(is_written)].0), "({x}, {y})");
+        }
+    }
+}

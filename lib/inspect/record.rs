@@ -117,7 +117,33 @@ impl Probe for Recorder {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::figure::Animation;
     use crate::framebuffer::Framebuffer;
+
+    #[test]
+    fn the_frame_of_an_animation_is_told() {
+        let plain = || Variant::new("plain", |_| {}, "").size(4, 4);
+        let moving = plain().animated(Animation { frames: 3, rate: 1 });
+        let frame = |variant: &Variant| {
+            let options = DrawOptions { frame: 2, ..variant.options(None) };
+            history("ch00", variant, &options, (1, 1)).frame
+        };
+        assert_eq!((frame(&moving), frame(&plain())), (Some(2), None));
+    }
+
+    #[test]
+    fn a_history_is_json() {
+        let variant = Variant::new("red", |picture| picture.set(1, 1, Color::RED), "").size(4, 4);
+        let json = history("ch00", &variant, &variant.options(None), (1, 1)).to_json();
+        let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+        let expected = serde_json::json!([{
+            "kind": "painted",
+            "title": "The program itself paints this pixel",
+            "hits": [{ "written": [255, 0, 0] }],
+        }]);
+        assert_eq!(json["events"], expected);
+        assert_eq!((&json["pixel"], &json["row"]), (&serde_json::json!([1, 1]), &serde_json::json!(2)));
+    }
 
     #[test]
     fn of_very_many_events_the_first_and_the_last_are_told() {

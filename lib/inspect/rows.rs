@@ -374,3 +374,41 @@ fn edge_miss(coverage: &Coverage, (x, y): Pixel) -> String {
         if is_beyond { "on the wrong side of an edge" } else { "on an edge that is neither top nor left" };
     format!("its edge functions are {}: the center is {why}", values.join(", "))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::dvec2;
+
+    #[test]
+    fn a_box_begins_with_the_pixel_of_its_lowest_point() {
+        let points = [dvec2(1.5, 7.9), dvec2(4.0, 2.0)];
+        for inside in [(1, 2), (4, 7), (2, 5)] {
+            assert!(is_in_box(&points, inside), "{inside:?}");
+        }
+        for outside in [(0, 5), (5, 5), (2, 1), (2, 8)] {
+            assert!(!is_in_box(&points, outside), "{outside:?}");
+        }
+    }
+
+    #[test]
+    fn why_a_pixel_of_the_box_was_missed() {
+        let screen = Rect::sized(16, 16);
+        let said = |triangle, pixel| {
+            let coverage = Coverage::new(triangle).expect("an area");
+            miss(&Primitive::Coverage(coverage), pixel, screen)
+        };
+        let triangle = [dvec2(0.5, 0.5), dvec2(8.5, 0.5), dvec2(0.5, 8.5)];
+        let functions =
+            |values: &str, why: &str| Some(format!("its edge functions are {values}: the center is {why}"));
+        assert_eq!(
+            said(triangle, (6, 6)),
+            functions("-32.000, 48.000, 48.000", "on the wrong side of an edge")
+        );
+        assert_eq!(
+            said(triangle, (4, 4)),
+            functions("0.000, 32.000, 32.000", "on an edge that is neither top nor left")
+        );
+        assert_eq!(said(triangle, (9, 9)), None, "not in the box");
+    }
+}

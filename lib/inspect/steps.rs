@@ -402,5 +402,7 @@ mod tests {
         assert_eq!([seen(0, 0), seen(31, 0)], [Some(Color::gray(80)); 2]);
         assert_eq!([seen(32, 0), seen(0, 1)], [Some(Color::BLUE); 2]);
         assert!(steps.frame(3 * 48 - 1) == steps.frame(999), "the finished picture");
+        let one_second_more = Animation { frames: 3 * 48 + 20, rate: 20 };
+        assert_eq!(steps.animation(), one_second_more);
     }
 }

@@ -44,11 +44,20 @@ pub(super) struct Materials {
 impl Materials {
     /// Reads the libraries that the `mtllib` statements of the OBJ file `model` name, each once.
     pub(super) fn load(model: &Path, statements: &[(u32, Vec<u8>)], warnings: &mut Warnings) -> Self {
+        Self::load_within(model, statements, MAX_FILE_BYTES, warnings)
+    }
+
+    /// The same, if all libraries together have no more than `left` bytes; those for which it does not last are left out.
+    fn load_within(
+        model: &Path,
+        statements: &[(u32, Vec<u8>)],
+        mut left: u64,
+        warnings: &mut Warnings,
+    ) -> Self {
         let (libraries, list, by_name) = (Vec::new(), Vec::new(), HashMap::new());
         let mut materials =
             Self { model: model.to_owned(), libraries, list, by_name, pictures: Pictures::default() };
         let mut known = HashSet::new();
-        let mut left = MAX_FILE_BYTES;
         for (line, names) in statements {
             if known.len() >= MAX_LIBRARIES {
                 warnings.push(format!("{}: line {line}: more libraries than are read", shown_path(model)));
@@ -545,6 +554,22 @@ mod tests {
         assert!(left(2).tinted(&two, [0.5; 3]).is_ok());
         let refused = left(1).tinted(&two, [0.5; 3]).expect_err("too many");
         assert_eq!(refused, format!("all textures of a model may have {MAX_TEXELS} pixels"));
+        assert_eq!(texels(&Texture::new(2, 3, vec![Color::BLACK; 6])), 6);
+    }
+
+    #[test]
+    fn libraries_have_a_largest_size_together() {
+        let texts = [b"newmtl a\n".as_slice(), b"newmtl b\n"];
+        let folder = Folder::new("libraries", &[("a.mtl", texts[0]), ("b.mtl", texts[1])]);
+        let (model, statements) = (folder.0.join("a.obj"), [(1, b"a.mtl b.mtl".to_vec())]);
+        let of_both = texts.concat().len() as u64;
+        let within = |left| {
+            let mut warnings = Warnings::new();
+            let materials = Materials::load_within(&model, &statements, left, &mut warnings);
+            (materials.list.len(), warnings.len())
+        };
+        assert_eq!(within(of_both), (2, 0));
+        assert_eq!(within(of_both - 1), (1, 1), "the second is left out");
     }
 
     #[test]
@@ -565,6 +590,8 @@ mod tests {
     fn what_is_not_drawn_is_said_once() {
         let text = "newmtl a\nd 1\nTr 0\nKe 0 0 0\nKs 0\nd 0.5\nKs 0 0 1\nTr\nillum 2\nillum 3\n";
         assert_eq!(library(text).0[0].not_drawn, [b"d".as_slice(), b"Ks", b"Tr", b"illum"]);
+        let nothing = library("newmtl a\nd 1\nTr 0\nKe 0 0 0\nKs 0 0 0\nKa 0\n");
+        assert!(nothing.0[0].not_drawn.is_empty(), "opaque, and without light of its own or highlights");
         let words = |count: u32| (0..count).map(|i| format!("w{i} 1\n")).collect::<String>();
         let material = |text: String| library(&format!("newmtl a\n{text}")).0.remove(0);
         assert_eq!(material(words(50)).not_drawn.len(), 40);
@@ -655,6 +682,7 @@ mod tests {
             |names: &[&str]| names.iter().map(|name| Path::new("there").join(name)).collect::<Vec<_>>();
         assert_eq!(names(b"a.mtl"), paths(&["a.mtl"]));
         assert_eq!(names(b"a.mtl my b.MTL  # both"), paths(&["a.mtl", "my b.MTL"]));
+        assert_eq!(names(b"my stone.mtl wood.mtl"), paths(&["my stone.mtl", "wood.mtl"]));
         assert_eq!(names(b"a b"), paths(&["a", "b"]));
         assert_eq!(names(b"sub\\\"a.mtl\""), paths(&["sub/\"a.mtl\""]));
         assert_ne!(names(b"\xe9.mtl"), names(b"\xe8.mtl"));

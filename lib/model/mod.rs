@@ -117,8 +117,8 @@ impl Model {
         let failure = |cause: String| FileError::new(path, cause);
         check_text(bytes).map_err(failure)?;
         let mut text = PlainText::new(bytes, progress);
-        let options =
-            tobj::LoadOptions { ignore_points: true, ignore_lines: true, ..tobj::LoadOptions::default() };
+        // Nothing but faces comes as far as the parser, which has nothing to leave out.
+        let options = tobj::LoadOptions::default();
         let parsed = tobj::load_obj_buf(&mut text, &options, |_| Err(tobj::LoadError::OpenFileFailed));
         let ((models, _), found) = text.finish(parsed).map_err(failure)?;
         if found.objects.is_empty() {

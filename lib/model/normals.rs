@@ -312,29 +312,63 @@ mod tests {
 
     #[test]
     fn a_sheet_has_two_sides() {
-        // A roof of two quads, each with both windings; beside it a third quad with one.
-        let roof = [
-            [0.0, 0.0, 0.0],
-            [1.0, 1.0, 0.0],
-            [1.0, 1.0, -1.0],
-            [0.0, 0.0, -1.0],
-            [2.0, 0.0, 0.0],
-            [2.0, 0.0, -1.0],
-            [4.0, 0.0, 0.0],
-            [4.0, 0.0, -1.0],
-        ];
-        let fronts: [&[usize]; 3] = [&[0, 1, 2, 3], &[1, 4, 5, 2], &[4, 6, 7, 5]];
-        let alone = smooth(&roof, &fronts[..2]);
-        let both = smooth(&roof, &[fronts[0], fronts[1], &[3, 2, 1, 0], &[2, 5, 4, 1]]);
-        assert_eq!(both[..2], alone[..], "as if there were no back");
-        for (front, back) in [(0, 2), (1, 3)] {
-            for (&normal, corner) in both[front].iter().zip(fronts[front]) {
-                let turned = [[3, 2, 1, 0], [2, 5, 4, 1]][back - 2].iter().position(|other| other == corner);
-                assert!(both[back][turned.expect("shared")].abs_diff_eq(-normal, 1e-15));
+        // A roof of two quads, flat or steep, each with both windings.
+        for height in [1.0, 5.0] {
+            let roof = [
+                [0.0, 0.0, 0.0],
+                [1.0, height, 0.0],
+                [1.0, height, -1.0],
+                [0.0, 0.0, -1.0],
+                [2.0, 0.0, 0.0],
+                [2.0, 0.0, -1.0],
+            ];
+            let fronts: [&[usize]; 2] = [&[0, 1, 2, 3], &[1, 4, 5, 2]];
+            let backs: [&[usize]; 2] = [&[3, 2, 1, 0], &[2, 5, 4, 1]];
+            let alone = smooth(&roof, &fronts);
+            let both = smooth(&roof, &[fronts[0], fronts[1], backs[0], backs[1]]);
+            assert_eq!(both[..2], alone[..], "as if there were no back");
+            for side in 0..2 {
+                for (&normal, corner) in both[side].iter().zip(fronts[side]) {
+                    let turned = backs[side].iter().position(|other| other == corner).expect("shared");
+                    assert!(both[side + 2][turned].abs_diff_eq(-normal, 1e-15));
+                }
             }
+            let single = smooth(&roof, &[fronts[0], backs[0], fronts[1]]);
+            assert_eq!(single[0], alone[0], "a neighbor of one side counts as it stands");
+            assert_eq!(single[2], alone[1], "and for it the side that goes on where it ends");
         }
-        let single = smooth(&roof, &[fronts[0], &[3, 2, 1, 0], fronts[1]]);
-        assert_eq!(single[0], alone[0], "a neighbor of one side counts as it stands");
+    }
+
+    #[test]
+    fn what_is_no_sheet_counts_whatever_it_faces() {
+        // The tips of two triangles that turn away from each other.
+        let places = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.5], [0.0, -1.0, 0.5]];
+        let (front, back, other): ([usize; 3], [usize; 3], [usize; 3]) = ([0, 1, 2], [0, 2, 1], [0, 4, 3]);
+        let alone = smooth(&places, &[&front, &other]);
+        let with_a_back = smooth(&places, &[&front, &other, &back]);
+        assert_eq!(with_a_back[0], alone[0]);
+    }
+
+    #[test]
+    fn a_sheet_is_two_faces_that_turn_against_each_other() {
+        let paired = |faces: &[[u32; 3]]| {
+            let mut normals = SmoothNormals::default();
+            for place in [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::X * 2.0] {
+                normals.number(place);
+            }
+            faces.iter().for_each(|face| normals.add(face));
+            normals.paired_faces()
+        };
+        assert_eq!(paired(&[[0, 1, 2], [1, 3, 2], [2, 1, 0]]), [true, false, true]);
+        assert_eq!(paired(&[[0, 1, 2], [1, 2, 0]]), [false; 2], "the same one twice");
+        assert_eq!(paired(&[[0, 1, 3], [3, 1, 0]]), [false; 2], "without area");
+    }
+
+    #[test]
+    fn equal_positions_have_one_number() {
+        let mut normals = SmoothNormals::default();
+        let places = [DVec3::ZERO, DVec3::X, dvec3(-0.0, 0.0, -0.0), DVec3::X];
+        assert_eq!(places.map(|place| normals.number(place)), [0, 1, 0, 1]);
     }
 
     #[test]
@@ -361,6 +395,14 @@ mod tests {
         let angles: Vec<f64> = (0..4).map(|at| weighted(&dent, at, normal).length()).collect();
         assert!((angles[1] - 1.5 * std::f64::consts::PI).abs() < 1e-15);
         assert!((angles.iter().sum::<f64>() - std::f64::consts::TAU).abs() < 1e-14, "as in every quadrangle");
+        // A square that runs out to a point and back.
+        let spike = [[0.0, 0.0], [1.0, 0.0], [3.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        let spike = spike.map(|[x, y]| dvec3(x, y, 0.0));
+        let angles = [0, 1, 2, 3, 4, 5].map(|at| weighted(&spike, at, normal).length());
+        let right = std::f64::consts::FRAC_PI_2;
+        for (angle, rights) in angles.into_iter().zip([1.0, 2.0, 0.0, 3.0, 1.0, 1.0]) {
+            assert!((angle - rights * right).abs() < 1e-15, "{angles:?}");
+        }
     }
 
     #[test]
@@ -373,6 +415,12 @@ mod tests {
             let sum: f64 = (0..4).filter(|&at| face[at] == pole).map(at_pole).sum();
             assert!((sum - std::f64::consts::FRAC_PI_2).abs() < 1e-15, "{face:?}: {sum}");
         }
+    }
+
+    #[test]
+    fn scattered_numbers_are_those_of_split_mix_64() {
+        let first_three = [0xE220_A839_7B1D_CDAF, 0x6E78_9E6A_A1B9_65F4, 0x06C4_5D18_8009_454F];
+        assert_eq!([0, 1, 2].map(scattered), first_three);
     }
 
     #[test]

@@ -550,12 +550,16 @@ mod tests {
     fn what_a_face_gives() {
         let text =
             format!("{CORNERS}vt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 3/1/1\nf 1/1 2//1 3/1\nf 1//1 2/1/1 3//-1\n");
-        let (plain, found) = plain(&text).expect("three faces");
+        let (text, found) = plain(&text).expect("three faces");
         let faces = "o 0\nf 1/1/1 2/1/1 3/1/1\no 1\nf 1 2 3\no 2\nf 1//1 2//1 3//-1\n";
-        assert!(plain.ends_with(faces), "{plain}");
+        assert!(text.ends_with(faces), "{text}");
         let given: Vec<_> =
             found.objects.iter().map(|object| (object.given.uvs, object.given.normals)).collect();
         assert_eq!(given, [(true, true), (false, false), (false, true)]);
+        for one_has_it in ["f 1/1 2 3", "f 1//1 2 3"] {
+            let text = format!("{CORNERS}vt 0 0\nvn 0 0 1\n{one_has_it}\n");
+            assert!(plain(&text).expect("a face").0.ends_with("f 1 2 3\n"), "{one_has_it}");
+        }
     }
 
     #[test]

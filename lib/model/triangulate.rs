@@ -117,7 +117,7 @@ fn crosses_itself(points: &[DVec2], work: &mut u64) -> bool {
     let side = |i: usize| [points[i], points[(i + 1) % count]];
     let apart = |[a, b]: [DVec2; 2], [c, d]: [DVec2; 2]| {
         let [left, right] = [turn(a, b, c), turn(a, b, d)];
-        left * right < 0.0 || (left > 0.0) != (right > 0.0) && left != 0.0 && right != 0.0
+        left != 0.0 && right != 0.0 && (left > 0.0) != (right > 0.0)
     };
     (0..count).any(|i| (i + 2..count).any(|j| apart(side(i), side(j)) && apart(side(j), side(i))))
 }
@@ -192,7 +192,8 @@ fn ears(points: &[DVec2], work: &mut u64) -> Option<Vec<[usize; 3]>> {
         } else {
             at = ring.next[at];
             misses += 1;
-            if misses > 2 * left {
+            // Each corner was looked at twice: as an ear, and as one that is none but flat.
+            if misses == 2 * left {
                 return None;
             }
         }
@@ -221,54 +222,95 @@ mod tests {
     }
 
     #[test]
-    fn a_convex_polygon_is_a_fan() {
-        let hexagon = [[0.0, 0.0], [2.0, 0.0], [3.0, 1.0], [2.0, 2.0], [1.0, 2.0], [0.0, 2.0]];
-        assert_eq!(cut(&hexagon), (vec![[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 5]], true, 5.0));
+    fn a_convex_polygon_is_a_fan_from_wherever_it_begins() {
+        let with_a_straight_angle = [[0.0, 0.0], [2.0, 0.0], [3.0, 1.0], [2.0, 2.0], [1.0, 2.0], [0.0, 2.0]];
+        let round = [0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0, 5.5];
+        let round = round.map(|angle| [libm::cos(angle), libm::sin(angle)]);
+        for mut polygon in [with_a_straight_angle.to_vec(), round.to_vec()] {
+            let fan: Vec<_> = (2..polygon.len()).map(|i| [0, i - 1, i]).collect();
+            for _ in 0..polygon.len() {
+                let (triangles, is_right, _) = cut(&polygon);
+                assert!(is_right && triangles == fan, "{polygon:?}: {triangles:?}");
+                polygon.rotate_left(1);
+            }
+        }
+        assert_eq!(cut(&with_a_straight_angle).2, 5.0);
     }
 
     #[test]
+    fn a_triangle_stays_what_it_is_with_or_without_area() {
+        for last in [[2.0, 0.0], [0.0, 1.0], [f64::NAN, 0.0]] {
+            let (triangles, is_right, _) = cut(&[[0.0, 0.0], [1.0, 0.0], last]);
+            assert!(is_right && triangles == [[0, 1, 2]], "{last:?}");
+        }
+    }
+
+    /// Concave polygons, counter-clockwise, and their areas.
+    const CONCAVE: [(&[[f64; 2]], f64); 6] = [
+        (&[[0.0, 0.0], [2.0, 1.0], [4.0, 0.0], [2.0, 4.0]], 6.0),
+        // The same, each corner twice.
+        (
+            &[[0.0, 0.0], [0.0, 0.0], [2.0, 1.0], [2.0, 1.0], [4.0, 0.0], [4.0, 0.0], [2.0, 4.0], [2.0, 4.0]],
+            6.0,
+        ),
+        // A corner touches another side from outside, at (2, 1).
+        (
+            &[
+                [0.0, 0.0],
+                [4.0, 0.0],
+                [4.0, 1.0],
+                [1.0, 1.0],
+                [1.0, 3.0],
+                [1.5, 3.0],
+                [2.0, 1.0],
+                [3.0, 3.0],
+                [3.0, 4.0],
+                [0.0, 4.0],
+            ],
+            10.5,
+        ),
+        (&[[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [2.0, 1.0], [0.0, 4.0]], 10.0),
+        // A comb, with corners on straight lines.
+        (
+            &[
+                [0.0, 0.0],
+                [1.0, 0.0],
+                [3.0, 0.0],
+                [5.0, 0.0],
+                [5.0, 3.0],
+                [4.0, 3.0],
+                [4.0, 1.0],
+                [3.0, 1.0],
+                [3.0, 3.0],
+                [2.0, 3.0],
+                [2.0, 1.0],
+                [1.0, 1.0],
+                [1.0, 3.0],
+                [0.0, 3.0],
+            ],
+            11.0,
+        ),
+        // A square with a hole, bridged at (0, 0) to (1, 1).
+        (
+            &[
+                [0.0, 0.0],
+                [3.0, 0.0],
+                [3.0, 3.0],
+                [0.0, 3.0],
+                [0.0, 0.0],
+                [1.0, 1.0],
+                [1.0, 2.0],
+                [2.0, 2.0],
+                [2.0, 1.0],
+                [1.0, 1.0],
+            ],
+            8.0,
+        ),
+    ];
+
+    #[test]
     fn a_concave_polygon_is_covered_once_from_wherever_it_begins() {
-        let shapes: [(&[[f64; 2]], f64); 4] = [
-            (&[[0.0, 0.0], [2.0, 1.0], [4.0, 0.0], [2.0, 4.0]], 6.0),
-            (&[[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [2.0, 1.0], [0.0, 4.0]], 10.0),
-            // A comb, with corners on straight lines.
-            (
-                &[
-                    [0.0, 0.0],
-                    [1.0, 0.0],
-                    [3.0, 0.0],
-                    [5.0, 0.0],
-                    [5.0, 3.0],
-                    [4.0, 3.0],
-                    [4.0, 1.0],
-                    [3.0, 1.0],
-                    [3.0, 3.0],
-                    [2.0, 3.0],
-                    [2.0, 1.0],
-                    [1.0, 1.0],
-                    [1.0, 3.0],
-                    [0.0, 3.0],
-                ],
-                11.0,
-            ),
-            // A square with a hole, bridged at (0, 0) to (1, 1).
-            (
-                &[
-                    [0.0, 0.0],
-                    [3.0, 0.0],
-                    [3.0, 3.0],
-                    [0.0, 3.0],
-                    [0.0, 0.0],
-                    [1.0, 1.0],
-                    [1.0, 2.0],
-                    [2.0, 2.0],
-                    [2.0, 1.0],
-                    [1.0, 1.0],
-                ],
-                8.0,
-            ),
-        ];
-        for (shape, area) in shapes {
+        for (shape, area) in CONCAVE {
             for start in 0..shape.len() {
                 let mut turned = shape.to_vec();
                 turned.rotate_left(start);
@@ -279,6 +321,16 @@ mod tests {
                         "{turned:?}: {triangles:?} {covered}"
                     );
                     assert_eq!(triangles.len(), shape.len() - 2);
+                    // Each corner is one of a triangle that has an area: else a crack could open beside it.
+                    let seen = |place: &[f64; 2]| {
+                        let is_seen = |[a, b, c]: &[usize; 3]| {
+                            let places = [turned[*a], turned[*b], turned[*c]];
+                            let [a, b, c] = places.map(DVec2::from_array);
+                            turn(a, b, c) != 0.0 && places.contains(place)
+                        };
+                        triangles.iter().any(is_seen)
+                    };
+                    assert!(turned.iter().all(seen), "{turned:?}: {triangles:?}");
                     turned.reverse();
                 }
             }
@@ -307,18 +359,27 @@ mod tests {
 
     #[test]
     fn what_cannot_be_cut_is_a_fan() {
-        let crossing: [&[[f64; 2]]; 4] = [
+        let crossing: [&[[f64; 2]]; 5] = [
             &[[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 2.0]],
+            &[[0.0, 0.0], [6.0, 0.0], [6.0, 6.0], [2.0, 7.0], [4.0, 7.0], [2.0, 5.0], [0.0, 6.0]],
             &[[0.0, 3.0], [-2.0, -3.0], [3.0, 1.0], [-3.0, 1.0], [2.0, -3.0]],
             &[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [3.0, 0.0]],
             &[[1.0, 1.0]; 5],
         ];
         for polygon in crossing {
-            let (triangles, is_right, _) = cut(polygon);
-            assert!(
-                !is_right && triangles[0] == [0, 1, 2] && triangles.len() == polygon.len() - 2,
-                "{polygon:?}"
-            );
+            // Wherever it lies, however small it is, and wherever it begins.
+            for [size, from] in [[1.0, 0.0], [1.0, 10.0], [1e-90, 0.0]] {
+                let place = |&[x, y]: &[f64; 2]| [size * x + from, size * y + from];
+                let mut polygon: Vec<_> = polygon.iter().map(place).collect();
+                for _ in 0..polygon.len() {
+                    let (triangles, is_right, _) = cut(&polygon);
+                    assert!(
+                        !is_right && triangles[0] == [0, 1, 2] && triangles.len() == polygon.len() - 2,
+                        "{polygon:?}"
+                    );
+                    polygon.rotate_left(1);
+                }
+            }
         }
     }
 
@@ -333,5 +394,16 @@ mod tests {
         assert_eq!((triangles.len(), work), (1000, 0));
         work = MAX_WORK;
         assert!(triangulate(&comb, DVec3::Z, &mut work, &mut triangles) && work > MAX_WORK / 2);
+        // Of a star, each side is compared with each other one.
+        let star = [[0.0, 3.0], [-2.0, -3.0], [3.0, 1.0], [-3.0, 1.0], [2.0, -3.0]];
+        let star = star.map(|[x, y]| DVec3::new(x, y, 0.0));
+        work = MAX_WORK;
+        assert!(!triangulate(&star, area_vector(&star), &mut work, &mut triangles));
+        assert_eq!(MAX_WORK - work, 12, "5 · 5 / 2");
+        // A square that is seen from behind has no ear: each corner is looked at twice, and four are compared each time.
+        let square = [DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y];
+        work = MAX_WORK;
+        assert!(!triangulate(&square, -area_vector(&square), &mut work, &mut triangles));
+        assert_eq!(MAX_WORK - work, 4 * 4 / 2 + 4 * 2 * 4);
     }
 }

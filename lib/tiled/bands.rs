@@ -89,3 +89,69 @@ impl Band<'_> {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tiles_at_the_border_are_cut() {
+        assert_eq!(tiles_of(Rect::sized(128, 32)), [1, 1]);
+        assert_eq!(tiles_of(Rect::sized(129, 33)), [2, 2]);
+        assert_eq!(tiles_of(Rect::sized(640, 480)), [5, 15]);
+    }
+
+    #[test]
+    fn each_pixel_is_in_one_tile_of_one_band() {
+        let picture = Rect::sized(300, 70);
+        let columns = tiles_of(picture)[0];
+        let count = 300 * 70;
+        let mut colors = vec![Color::BLACK; count];
+        // Each has its own number, to be recognized by.
+        let mut depths: Vec<f32> = (0..count).map(|index| index as f32).collect();
+        each_band(picture, &mut colors, &mut depths, &|row, band| {
+            assert_eq!((band.stride, band.to_next_band), (300, 300 * 32));
+            for (number, tile) in band.tiles(row * columns) {
+                assert_eq!((tile.left, tile.bottom), (number as i32 % 3 * 128, number as i32 / 3 * 32));
+                assert_eq!(band.ranges(tile).count(), tile.rows().len());
+                for (y, range) in tile.rows().zip(band.ranges(tile)) {
+                    for (x, index) in tile.columns().zip(range.clone()) {
+                        assert_eq!(index, band.index((x, y)));
+                        assert_eq!(band.depths[index], (y * 300 + x) as f32);
+                        assert_eq!(band.colors[index], Color::BLACK, "twice");
+                        band.colors[index] = Color::WHITE;
+                    }
+                    assert_eq!(range.len(), tile.columns().len());
+                }
+            }
+        });
+        assert_eq!(colors, vec![Color::WHITE; count]);
+    }
+
+    #[test]
+    fn pixels_are_counted_from_the_lower_left_one() {
+        let rect = Rect { left: 3, bottom: 32, right: 8, top: 64 };
+        let band = Band { rect, stride: 5, to_next_band: 0, colors: &mut [], depths: &mut [] };
+        assert_eq!([(3, 32), (4, 32), (3, 33), (7, 63)].map(|pixel| band.index(pixel)), [0, 1, 5, 159]);
+    }
+
+    #[test]
+    fn a_very_short_band_is_drawn_in_a_copy() {
+        for width in [1, 7, 8, 9] {
+            let picture = Rect::sized(width, 1);
+            let mut colors = vec![Color::rgb(1, 2, 3); width as usize];
+            let mut depths = vec![0.5; width as usize];
+            each_band(picture, &mut colors, &mut depths, &|_, band| {
+                band.with_room(|band| {
+                    let count = (width as usize).max(LANES);
+                    assert_eq!((band.colors.len(), band.depths.len()), (count, count));
+                    assert_eq!(band.to_next_band == 0, width < 8, "{width}");
+                    assert_eq!((band.colors[0], band.depths[0]), (Color::rgb(1, 2, 3), 0.5));
+                    let last = width as usize - 1;
+                    (band.colors[last], band.depths[last]) = (Color::WHITE, 0.25);
+                });
+            });
+            assert_eq!((colors.last(), depths.last()), (Some(&Color::WHITE), Some(&0.25)));
+        }
+    }
+}

@@ -81,3 +81,100 @@ pub(super) fn depth_range(coverage: &Coverage, triangle: Triangle<'_>, rect: Rec
     [depths.into_iter().fold(f64::MAX, f64::min) - room, depths.into_iter().fold(f64::MIN, f64::max) + room]
 }
 // ANCHOR_END: occlusion
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::AtomicBool;
+
+    use super::*;
+    use crate::clip::{ClipVertex, NdcVertex};
+    use crate::interpolate::Interpolation;
+    use crate::shader::from_fn;
+    use crate::state::RenderState;
+    use crate::tiled::Instructions;
+    use crate::tiled::frame::is_plain;
+    use crate::tiled::front::{Front, Source};
+    use crate::tiled::vertices::{Projection, Vertices};
+    use glam::{DVec4, dvec3};
+
+    /// The lower left half of a rectangle so many times as large as the tile.
+    fn half(size: f64, depth: f64) -> [NdcVertex<0>; 3] {
+        let far = size - 1.0;
+        [(-1.0, -1.0), (far, -1.0), (-1.0, far)].map(|(x, y)| NdcVertex {
+            position: dvec3(x, y, depth),
+            w: 1.0,
+            varyings: [],
+        })
+    }
+
+    /// The occluder depth in a tile, the lower left quarter of a picture.
+    fn occluder(state: &RenderState, tile: Rect, triangles: &[[NdcVertex<0>; 3]]) -> f64 {
+        let shader =
+            from_fn(|&position: &DVec4| ClipVertex { position, varyings: [] }, |_: [f64; 0]| [0.0; 3]);
+        let source = Source::Pieces(triangles);
+        let mut front = Front::default();
+        let picture = Rect { right: 2 * tile.right, top: 2 * tile.top, ..tile };
+        front.prepare(Instructions::baseline(), &source, &shader, state, picture);
+        let (columns, discards) = (picture.right, AtomicBool::new(false));
+        let (front, source, is_plain) = (&front, &source, is_plain(state));
+        let frame = Frame { shader: &shader, state, front, source, is_plain, columns, discards };
+        occluder_depth(&frame, 0, tile)
+    }
+
+    #[test]
+    fn what_covers_a_tile_hides_what_is_behind_it() {
+        let (state, tile) = (RenderState::default(), Rect::sized(64, 16));
+        // They cover the last pixel, and would not cover another one.
+        let [near, far] = [0.25, 0.5].map(|depth| half(1.965, depth));
+        for triangles in [[near, far], [far, near]] {
+            let depth = occluder(&state, tile, &triangles);
+            assert!(depth > 0.25 && depth < 0.2501, "{depth}: the nearer one, and room for rounding");
+        }
+        let nearly = half(1.9, 0.25);
+        assert_eq!(occluder(&state, tile, &[nearly]), NO_OCCLUDER, "the last pixel is not covered");
+        assert_eq!(occluder(&state, tile, &[]), NO_OCCLUDER);
+        // Nine pixels wide and high, and eight.
+        let small = Rect::sized(4, 4);
+        assert!(occluder(&state, small, &[half(9.0 / 4.0, 0.25)]) < 0.2501);
+        assert_eq!(occluder(&state, small, &[half(8.0 / 4.0, 0.25)]), NO_OCCLUDER);
+        let affine = RenderState { interpolation: Interpolation::Affine, ..state };
+        assert_eq!(occluder(&affine, tile, &[near]), NO_OCCLUDER, "not with other options");
+    }
+
+    /// The range of depths in a rectangle of a triangle with these depths at (0, 0), (128, 0) and (0, 128).
+    fn range(depths: [f64; 3], rect: Rect) -> [f64; 2] {
+        let ndc = [(-1.0, -1.0), (3.0, -1.0), (-1.0, 3.0)];
+        let ndc = [0, 1, 2].map(|i| NdcVertex {
+            position: dvec3(ndc[i].0, ndc[i].1, depths[i]),
+            w: 1.0,
+            varyings: [],
+        });
+        let (mut vertices, state) = (Vertices::default(), RenderState::default());
+        vertices.push(&ndc, &Projection::new(&state, Rect::sized(64, 64))).expect("near enough");
+        let triangle = vertices.triangle::<0>([0, 1, 2]);
+        depth_range(&coverage_of(triangle).expect("an area"), triangle, rect)
+    }
+
+    #[test]
+    fn depths_are_between_those_of_the_outermost_centers() {
+        let rect = Rect { left: 3, bottom: 7, right: 20, top: 30 };
+        let depth = |x: f64, y: f64| 0.5 + (0.25 * y - 0.125 * x) / 128.0;
+        let [least, greatest] = range([0.5, 0.375, 0.75], rect);
+        // The greatest of all numbers in the sum, and of each sixteen roundings of single precision.
+        let room = (0.5 + 0.125 + 0.25) * 16.0 * f64::from(f32::EPSILON);
+        assert!((least - (depth(19.5, 7.5) - room)).abs() < 1e-15, "{least}");
+        assert!((greatest - (depth(3.5, 29.5) + room)).abs() < 1e-15, "{greatest}");
+    }
+
+    #[test]
+    fn of_depths_without_measure_nothing_is_said() {
+        let one = Rect::sized(1, 1);
+        let nothing = [f64::NEG_INFINITY, f64::INFINITY];
+        for odd in [2.0 * FARTHEST, -2.0 * FARTHEST, f64::NAN, f64::INFINITY] {
+            assert_eq!(range([odd, 0.0, 0.0], one), nothing, "{odd}");
+            assert_eq!(range([0.0, odd, 0.0], one), nothing, "{odd}");
+            assert_eq!(range([0.0, 0.0, odd], one), nothing, "{odd}");
+        }
+        assert_ne!(range([0.0, 0.0, FARTHEST / 2.0], one), nothing);
+    }
+}

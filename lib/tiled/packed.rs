@@ -132,3 +132,55 @@ pub(super) fn linear<R: Real, const N: usize>(number: impl Fn(usize) -> R) -> Li
     }
     LinearVaryings { distance: number(0), depth: number(1), values }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::array::from_fn;
+
+    use super::*;
+    use crate::clip::NdcVertex;
+    use crate::rect::Rect;
+    use crate::state::RenderState;
+    use crate::tiled::instructions::with_each;
+    use crate::tiled::vertices::{Projection, Vertices};
+    use crate::varyings::TriangleVaryings;
+    use glam::dvec3;
+
+    /// All numbers of a triangle, in all lanes, against those of the exact rasterizer.
+    fn check<const N: usize>() {
+        let vertex = |seed: f64| {
+            let varyings = from_fn(|k| seed * (k as f64 + 0.3) - 7.0);
+            NdcVertex { position: dvec3(0.1 * seed, 0.3, 1.0 / seed), w: seed + 1.0, varyings }
+        };
+        let ndc = [1.0, 2.5, 6.0].map(vertex);
+        let (mut vertices, state) = (Vertices::default(), RenderState::default());
+        vertices.push(&ndc, &Projection::new(&state, Rect::sized(8, 8))).expect("near enough");
+        let expected = TriangleVaryings::<f32, N>::new(&ndc, state.interpolation);
+        with_each!(instructions => {
+            let packed = PackedTriangleVaryings::<_, N>::of(instructions, vertices.triangle::<N>([0, 1, 2]));
+            for weights in [[0.0, 0.0], [0.25, 0.625], [0.1, -0.7]] {
+                for (packed, expected) in [
+                    (packed.at(instructions, weights), expected.linear_at(weights)),
+                    (packed.change(instructions, weights), expected.change(weights)),
+                ] {
+                    let LinearVaryings { distance, depth, values } = packed.spread(instructions);
+                    assert_eq!(instructions.numbers(distance), [expected.distance; LANES]);
+                    assert_eq!(instructions.numbers(depth), [expected.depth; LANES]);
+                    for (value, expected) in values.into_iter().zip(expected.values) {
+                        assert_eq!(instructions.numbers(value), [expected; LANES], "{N} varyings");
+                    }
+                }
+            }
+        });
+    }
+
+    #[test]
+    fn packed_as_one_by_one() {
+        // One block, a full one, and one number more; two full ones, and one number more.
+        check::<0>();
+        check::<6>();
+        check::<7>();
+        check::<14>();
+        check::<15>();
+    }
+}

@@ -44,3 +44,51 @@ pub(super) fn shared(a: Rect, b: Rect) -> Option<Rect> {
     let rect = a.intersection(b);
     (rect.left < rect.right && rect.bottom < rect.top).then_some(rect)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exact::edge::Coverage;
+
+    #[test]
+    fn boxes_are_those_of_the_exact_rasterizer() {
+        // From just before one center to just after the next, on both sides of the origin.
+        for low in -400..400 {
+            for size in [1, 127, 255, 256, 257, 5000] {
+                let positions = [[low, -low], [low + size, 7], [0, size - low]];
+                let Some(coverage) = Coverage::of(positions.map(|position| position.map(i64::from))) else {
+                    continue;
+                };
+                let everything = Rect { left: -100, bottom: -100, right: 100, top: 100 };
+                assert_eq!(box_of(positions), coverage.bounding_box(everything), "{positions:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn areas_have_a_sign_and_do_not_overflow() {
+        let [a, b, c] = [[256, 128], [768, 640], [300, 1000]];
+        let area = |positions| Coverage::of(positions).map(|coverage| coverage.twice_area);
+        assert_eq!(Some(signed_area([a, b, c])), area([a, b, c].map(|position| position.map(i64::from))));
+        assert_eq!(signed_area([a, c, b]), -signed_area([a, b, c]), "clockwise");
+        assert_eq!(signed_area([a, b, b]), 0);
+        let far = 1 << 24;
+        assert_eq!(signed_area([[-far, -far], [far, -far], [far, far]]), 1 << 50);
+    }
+
+    #[test]
+    fn a_rectangle_is_measured_along_both_sides() {
+        let at = |width, height| Rect { left: -3, bottom: 5, right: width - 3, top: height + 5 };
+        assert!(is_at_most(at(8, 8), 8));
+        assert!(!is_at_most(at(9, 8), 8) && !is_at_most(at(8, 9), 8));
+    }
+
+    #[test]
+    fn neighbors_share_nothing() {
+        let rect = |left, bottom, right, top| Rect { left, bottom, right, top };
+        let whole = rect(0, 0, 10, 10);
+        assert_eq!(shared(whole, rect(5, 9, 20, 20)), Some(rect(5, 9, 10, 10)));
+        assert_eq!(shared(whole, rect(10, 0, 20, 10)), None, "beside it");
+        assert_eq!(shared(whole, rect(0, 10, 10, 20)), None, "above it");
+    }
+}

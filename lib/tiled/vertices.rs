@@ -351,6 +351,7 @@ mod tests {
     use super::*;
     use crate::clip::ClipVolume;
     use crate::exact::is_in_guard_band;
+    use crate::shader::from_fn;
     use crate::tiled::instructions::with_each;
     use glam::dvec4;
     use proptest::prelude::*;
@@ -401,6 +402,33 @@ mod tests {
                     prop_assert_eq!(outside[i] & !NOT_REPRESENTABLE, expected);
                 }
             });
+        }
+    }
+
+    #[test]
+    fn each_vertex_of_a_mesh_has_its_place() {
+        // Some lie beyond the right side of the view. Nine numbers are two blocks.
+        let place = |i: f64| dvec4(i / 300.0 - 0.5, 0.25, 0.5, 1.0 + i / 1000.0);
+        let shader = from_fn(|&i: &f64| ClipVertex { position: place(i), varyings: [i; 7] }, |_| [0.0; 3]);
+        let state = RenderState::default();
+        let projection = Projection::new(&state, Rect::sized(640, 480));
+        let mut vertices = Vertices::default();
+        // Fewer than four, some more, and more than one thread has.
+        for count in [1, 7, 1030] {
+            let mesh = Mesh::indexed((0..count).map(f64::from).collect(), vec![0, 0, 0]).expect("a triangle");
+            vertices.shade(Instructions::default(), &mesh, &shader, &projection);
+            for (i, number) in mesh.vertices().iter().enumerate() {
+                let one = NdcVertex::from(shader.vertex(number));
+                let mut packed = [Block::ZERO; 2];
+                pack(&one, state.interpolation, &mut packed);
+                let triangle = vertices.triangle::<7>([i; 3]);
+                assert_eq!(Some(triangle.positions[0]), projection.snapped_position(&one), "{i} of {count}");
+                assert_eq!([0, 1].map(|block| triangle.packed[2][block].0), packed.map(|block| block.0));
+                let is_outside = |plane: &Plane| plane.signed_distance(place(*number)) < 0.0;
+                let outside = projection.planes.iter().enumerate();
+                let outside = outside.fold(0, |bits, (bit, plane)| bits | u8::from(is_outside(plane)) << bit);
+                assert_eq!(vertices.outside([0, i, i]), [0, outside, outside], "{i} of {count}");
+            }
         }
     }
 
