@@ -1,8 +1,9 @@
 //! Runs tests that are known only when the program runs, as `cargo test` runs others: names to look for, `--exact`, `--skip`,
 //! `--list`, `--quiet`, `--test-threads`.
 //!
-//! The crate `libtest-mimic` does this and more. It asks for other features of `clap` than the programs do, so that after the
-//! first `cargo run` the first `cargo test` built `clap`, the library and all programs once more.
+//! The crate `libtest-mimic` does this and more. It asks for other features of `clap` than the programs do. So after the first
+//! `cargo run` the first `cargo test` built `clap`, the library and all programs once more; and what it tested were not the
+//! programs that a reader runs.
 
 use std::ffi::OsString;
 use std::io::{self, Write, stdout};
