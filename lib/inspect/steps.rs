@@ -346,6 +346,8 @@ impl Steps {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::clip::{ClipTest, Plane, RecordedVertex};
+    use glam::dvec4;
 
     /// Each pixel of the left half three times, in rows.
     fn thrice(picture: &mut Framebuffer) {
@@ -354,6 +356,25 @@ mod tests {
         for gray in [80, 160, 240] {
             picture.fill(half, Color::gray(gray));
         }
+    }
+
+    #[test]
+    fn outlines_are_shown_unless_they_are_too_many() {
+        // A plane cuts a vertex off: an outline before that, and one after it.
+        let vertex = |x, y| RecordedVertex { position: dvec4(x, y, 0.0, 1.0), varyings: vec![] };
+        let triangle = Assembled {
+            vertices: [vertex(0.0, 0.0), vertex(2.0, 0.0), vertex(0.0, 1.0)],
+            model: None,
+            planes: vec![Plane::homogeneous(dvec4(-1.0, 0.0, 0.0, 1.0))],
+            test: ClipTest::BeforeDivide,
+        };
+        let shown = |triangles| {
+            let mut story = Story::default();
+            (0..triangles).for_each(|_| story.outline(&triangle, [DVec2::ZERO, DVec2::X, DVec2::ONE]));
+            story.writes.push(Write { at: [0, 0], color: [255, 0, 0], start: Start::Nothing });
+            story.frames().iter().filter(|(_, outline)| outline.is_some()).count()
+        };
+        assert_eq!([1, MOST_OUTLINES / 2, MOST_OUTLINES / 2 + 1].map(shown), [2, MOST_OUTLINES, 0]);
     }
 
     #[test]
