@@ -390,11 +390,10 @@ impl Payload for EdgeParameter {
 
 #[cfg(test)]
 mod tests {
-    use std::array::from_fn;
-
     use super::*;
 
     use std::any::Any;
+    use std::array::from_fn;
     use std::sync::{Arc, Mutex};
 
     use crate::observer::Observer;

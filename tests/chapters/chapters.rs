@@ -33,11 +33,11 @@ pub(crate) fn variants() -> impl Iterator<Item = (&'static str, &'static Variant
     CHAPTERS.iter().flat_map(|(chapter, _)| chapter.variants.iter().map(|variant| (chapter.name, variant)))
 }
 
-/// Half the size of its own picture, for tests that would say the same of any size. What is about single pixels keeps its own:
-/// half of it would be a part of it.
-pub(crate) fn half_size(variant: &Variant) -> (u32, u32) {
+/// A size so many times smaller than its own, for tests that would say the same of any size. A picture that is about single
+/// pixels keeps its own: less would be a part of it.
+pub(crate) fn smaller(variant: &Variant, times: u32) -> (u32, u32) {
     let (width, height) = variant.size;
-    if variant.in_pixels { (width, height) } else { (width / 2, height / 2) }
+    if variant.in_pixels { (width, height) } else { (width / times, height / times) }
 }
 
 /// A row of a chapter's table.

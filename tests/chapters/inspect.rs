@@ -1,6 +1,6 @@
 //! The histories of pixels: what is reported is what stands in the picture, and its numbers are those of the formulas.
 
-use crate::chapters::{CHAPTERS, half_size, variant, variants};
+use crate::chapters::{CHAPTERS, smaller, variant, variants};
 use crate::sizes::GRID;
 use rasterbook::figure::{DrawOptions, RasterizerChoice, Variant};
 use rasterbook::inspect::{History, Steps, histories, history};
@@ -33,7 +33,7 @@ fn what_is_reported_is_what_stands_in_the_picture_and_no_event_is_unknown() {
     let rows: Vec<_> = variants().collect();
     rows.par_iter().for_each(|&(chapter, variant)| {
         let subject = variant.subject().expect("assets");
-        let own = DrawOptions { size: half_size(variant), ..variant.options(subject.as_ref()) };
+        let own = DrawOptions { size: smaller(variant, 2), ..variant.options(subject.as_ref()) };
         let both = [RasterizerChoice::Scanline, RasterizerChoice::Exact];
         let choices = variant.rasterizer.map_or(vec![own.rasterizer], |_| both.to_vec());
         for rasterizer in choices {
@@ -56,9 +56,7 @@ fn steps_lead_to_the_picture() {
         .map(|&(chapter, variant)| {
             let subject = variant.subject().expect("assets");
             let own = variant.options(subject.as_ref());
-            // Small, where that shows the same.
-            let size = if variant.in_pixels { variant.size } else { (160, 120) };
-            let options = DrawOptions { size, ..own };
+            let options = DrawOptions { size: smaller(variant, 4), ..own };
             let steps = Steps::new(variant, &options).expect("a small picture");
             // After the last step the finished picture stays for a second.
             let count = steps.animation().frames - steps.animation().rate;

@@ -4,7 +4,7 @@ use rasterbook::figure::{Given, Kind, Knob, Scene, Value, Variant};
 use rasterbook::{Color, Framebuffer};
 use rayon::prelude::*;
 
-use crate::chapters::{half_size, variants};
+use crate::chapters::{smaller, variants};
 
 /// The picture of a size, with knobs at values.
 fn with(variant: &Variant, size: (u32, u32), values: &[(&Knob, Value)]) -> Framebuffer {
@@ -23,7 +23,7 @@ fn changes(variant: &Variant, knob: &Knob, others: &[(&Knob, Value)]) -> bool {
         let mut values = values(variant, knob).into_iter();
         values.any(|value| with(variant, size, &[others, &[(knob, value)]].concat()) != before)
     };
-    changes(half_size(variant)) || changes(variant.size)
+    changes(smaller(variant, 2)) || changes(variant.size)
 }
 
 /// Values that a knob can have, both ends of its range among them.

@@ -1,7 +1,7 @@
 //! `--size` means the same for every variant: a scene scales, keeps its proportions and lies in the middle; what is about
 //! single pixels is the same picture with more or less around it.
 
-use crate::chapters::{half_size, variant, variants};
+use crate::chapters::{smaller, variant, variants};
 use rasterbook::figure::picture::paste;
 use rasterbook::figure::{DrawOptions, Variant};
 use rasterbook::inspect::{history, overdraw};
@@ -80,7 +80,7 @@ fn twice_as_large_a_scene_shows_the_same() {
 #[test]
 fn in_other_proportions_a_scene_lies_undistorted_in_the_middle() {
     all(false, |variant| {
-        let (width, height) = half_size(variant);
+        let (width, height) = smaller(variant, 2);
         let own = draw(variant, (width, height));
         let wrong = [(60, 0), (0, 60)].map(|(wider, higher)| {
             let picture = draw(variant, (width + wider, height + higher));
