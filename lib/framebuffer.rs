@@ -131,10 +131,11 @@ impl Framebuffer {
     pub fn fill(&mut self, rect: Rect, color: Color) {
         let inside = rect.intersection(self.rect());
         for y in inside.rows() {
-            for x in inside.columns() {
-                self.set(x, y, color);
+            if let Some(first) = self.index(inside.left, y) {
+                self.pixels[first..first + inside.columns().len()].fill(color);
             }
         }
+        self.report(|observer| inside.pixels().for_each(|pixel| observer.written(pixel, color)));
     }
 
     /// Exchanges pictures with another framebuffer; observers stay where they are.

@@ -613,7 +613,7 @@ mod tests {
     /// The level of gray, and where the white dot is.
     fn seen(picture: &Framebuffer) -> (u8, Option<Pixel>) {
         let rect = picture.rect();
-        let mut pixels = rect.rows().flat_map(|y| rect.columns().map(move |x| (x, y)));
+        let mut pixels = rect.pixels();
         let dot = pixels.find(|&(x, y)| picture.get(x, y) == Some(Color::WHITE));
         let level = picture.get(rect.right - 1, rect.top - 1).unwrap_or_default().channels()[0];
         (level, dot)

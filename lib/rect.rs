@@ -84,6 +84,11 @@ impl Rect {
     pub const fn rows(self) -> Range<i32> {
         self.bottom..self.top
     }
+
+    /// All pixels, row by row from the bottom, each from left to right: as [`Rect::index`] counts them.
+    pub fn pixels(self) -> impl Iterator<Item = Pixel> {
+        self.rows().flat_map(move |y| self.columns().map(move |x| (x, y)))
+    }
 }
 
 /// How many numbers there are from `from` up to, and without, `to`.
@@ -127,6 +132,15 @@ mod tests {
         ) {
             let [a, b] = [a, b].map(|[left, bottom, right, top]| Rect { left, bottom, right, top });
             prop_assert_eq!(a.intersection(b).contains(x, y), a.contains(x, y) && b.contains(x, y));
+        }
+
+        #[test]
+        fn pixels_come_in_the_order_of_their_indices(sides in prop::array::uniform4(-9..9)) {
+            let [left, bottom, right, top] = sides;
+            let rect = Rect { left, bottom, right, top };
+            let indices: Vec<_> = rect.pixels().map(|(x, y)| rect.index(x, y)).collect();
+            let expected: Vec<_> = (0..rect.columns().len() * rect.rows().len()).map(Some).collect();
+            prop_assert_eq!(indices, expected);
         }
     }
 }

@@ -78,11 +78,7 @@ fn signed_counts(triangles: &[[DVec2; 3]]) -> Vec<i32> {
 
 fn winding_numbers(outline: &[DVec2]) -> Vec<i32> {
     let outline = snapped(outline);
-    WINDOW
-        .rows()
-        .flat_map(|y| WINDOW.columns().map(move |x| (x, y)))
-        .map(|(x, y)| winding_number(&outline, x, y))
-        .collect()
+    WINDOW.pixels().map(|(x, y)| winding_number(&outline, x, y)).collect()
 }
 
 /// A coordinate: anywhere, on a center, on a border, at 1/256 steps about a center, or far away.
@@ -186,7 +182,7 @@ proptest! {
     fn far_corners_cover_what_each_pixel_says(corners in prop::array::uniform3((-65_000.0..65_000.0, -65_000.0..65_000.0))) {
         if let Some(coverage) = Coverage::new(corners.map(DVec2::from)) {
             let is_covered = |&(x, y): &(i32, i32)| coverage.covers(coverage.edge_values(center(x, y)));
-            let one_by_one = WINDOW.rows().flat_map(|y| WINDOW.columns().map(move |x| (x, y))).filter(is_covered);
+            let one_by_one = WINDOW.pixels().filter(is_covered);
             prop_assert!(coverage.pixels(WINDOW).map(|(x, y, _)| (x, y)).eq(one_by_one));
             prop_assert!(coverage.pixels(WINDOW).all(|(x, y, values)| values == coverage.edge_values(center(x, y))));
         }

@@ -97,11 +97,9 @@ fn blocks(picture: &Framebuffer, part: Rect, factor: u32) -> Framebuffer {
 /// The same, from the lower left pixel of a picture on; what does not fit is cut.
 pub(crate) fn fill_blocks(into: &mut Framebuffer, picture: &Framebuffer, part: Rect, factor: u32) {
     into.clear(GRID);
-    for y in part.rows() {
-        for x in part.columns() {
-            let block = block((x - part.left, y - part.bottom), factor, (0, 0));
-            into.fill(block, picture.get(x, y).unwrap_or_default());
-        }
+    for (x, y) in part.pixels() {
+        let block = block((x - part.left, y - part.bottom), factor, (0, 0));
+        into.fill(block, picture.get(x, y).unwrap_or_default());
     }
 }
 
@@ -146,10 +144,8 @@ pub fn draw_enlarged_within(
 
 /// Copies a picture into another one, its lower left corner to (left, bottom); what does not fit is left out.
 pub fn paste(into: &mut Framebuffer, picture: &Framebuffer, left: i32, bottom: i32) {
-    for y in picture.rect().rows() {
-        for x in picture.rect().columns() {
-            into.set(left.saturating_add(x), bottom.saturating_add(y), picture.get(x, y).unwrap_or_default());
-        }
+    for (x, y) in picture.rect().pixels() {
+        into.set(left.saturating_add(x), bottom.saturating_add(y), picture.get(x, y).unwrap_or_default());
     }
 }
 
@@ -163,13 +159,11 @@ pub fn difference(this: &Framebuffer, that: &Framebuffer) -> Option<(Framebuffer
     }
     let mut result = Framebuffer::new(this.width(), this.height());
     let mut count = 0;
-    for y in this.rect().rows() {
-        for x in this.rect().columns() {
-            let color = this.get(x, y).unwrap_or_default();
-            let differs = that.get(x, y) != Some(color);
-            count += usize::from(differs);
-            result.set(x, y, if differs { Color::rgb(255, 0, 255) } else { dim(color) });
-        }
+    for (x, y) in this.rect().pixels() {
+        let color = this.get(x, y).unwrap_or_default();
+        let differs = that.get(x, y) != Some(color);
+        count += usize::from(differs);
+        result.set(x, y, if differs { Color::rgb(255, 0, 255) } else { dim(color) });
     }
     Some((result, count))
 }

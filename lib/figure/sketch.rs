@@ -68,7 +68,7 @@ impl<'a> Sketch<'a> {
         let [(left, bottom), (right, top)] = [center - radius, center + radius].map(pixel);
         let around = Rect { left, bottom, right: right + 1, top: top + 1 };
         let around = around.intersection(self.framebuffer.rect()).intersection(self.part);
-        for (x, y) in around.rows().flat_map(|y| around.columns().map(move |x| (x, y))) {
+        for (x, y) in around.pixels() {
             let pixel = dvec2(f64::from(x) + 0.5, f64::from(y) + 0.5);
             if pixel.distance_squared(center) <= radius * radius {
                 self.framebuffer.set(x, y, color);
@@ -162,7 +162,7 @@ mod tests {
         sketch.dot(dvec2(4.0, 4.0), 9.0, Color::RED);
         sketch.bar(dvec2(0.0, 0.0), dvec2(12.0, 8.0), Color::RED);
         let all = picture.rect();
-        for (x, y) in all.rows().flat_map(|y| all.columns().map(move |x| (x, y))) {
+        for (x, y) in all.pixels() {
             assert_eq!(picture.get(x, y) == Some(Color::RED), part.contains(x, y), "({x}, {y})");
         }
     }

@@ -267,11 +267,8 @@ where
 
     fn picture(&mut self) -> Vec<[u8; 3]> {
         let picture = &self.target.color;
-        let rect = picture.rect();
-        rect.rows()
-            .flat_map(|y| rect.columns().map(move |x| (x, y)))
-            .map(|(x, y)| picture.get(x, y).unwrap_or_default().channels())
-            .collect()
+        let pixels = picture.rect().pixels();
+        pixels.map(|(x, y)| picture.get(x, y).unwrap_or_default().channels()).collect()
     }
 }
 

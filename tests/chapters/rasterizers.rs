@@ -56,5 +56,5 @@ fn displaced(picture: &Framebuffer, other: &Framebuffer) -> usize {
             !(least.saturating_sub(2)..=most.saturating_add(2)).contains(&color[k])
         })
     };
-    rect.rows().flat_map(|y| rect.columns().map(move |x| (x, y))).filter(is_displaced).count()
+    rect.pixels().filter(is_displaced).count()
 }

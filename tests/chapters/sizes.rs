@@ -106,7 +106,7 @@ fn what_is_drawn_in_pixels_is_cropped_and_not_scaled() {
 
 fn differing(picture: &Framebuffer, other: impl Fn(i32, i32) -> Option<Color>) -> usize {
     let rect = picture.rect();
-    let pixels = rect.rows().flat_map(|y| rect.columns().map(move |x| (x, y)));
+    let pixels = rect.pixels();
     pixels.filter(|&(x, y)| picture.get(x, y) != other(x, y)).count()
 }
 

@@ -64,7 +64,7 @@ pub(crate) fn scene(data: &[u8]) {
     let [mut exact, mut tiled] = [(); 2].map(|()| Target::<f32>::sized(size.0, size.1));
     draw(&mesh, &shader, &state, &Exact::<f32>::new(), &mut exact, &Silent);
     Tiled::new().draw_mesh(&mesh, &shader, &state, &mut tiled);
-    for (x, y) in exact.color.rect().rows().flat_map(|y| exact.color.rect().columns().map(move |x| (x, y))) {
+    for (x, y) in exact.color.rect().pixels() {
         assert_eq!(tiled.color.get(x, y), exact.color.get(x, y), "color at ({x}, {y})");
         let depths = [&tiled, &exact].map(|target| target.depth.get(x, y).expect("inside"));
         let is_same = depths[0].to_bits() == depths[1].to_bits() || depths.iter().all(|depth| depth.is_nan());
