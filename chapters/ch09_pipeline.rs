@@ -372,7 +372,7 @@ impl Shader<0> for Flat {
     }
 
     fn fragment<R: Real>(&self, _: [R; 0]) -> Shaded<R> {
-        Shaded::translucent(self.color.map(R::of), R::of(self.opacity))
+        Shaded::translucent(R::array_of(self.color), R::of(self.opacity))
     }
 }
 

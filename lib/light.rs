@@ -40,20 +40,23 @@ fn scale_down<R: Real>(v: Vector<R>, s: R) -> Vector<R> {
 }
 
 /// v · s.
+#[must_use]
 #[inline(always)]
-fn scale<R: Real>(v: Vector<R>, s: R) -> Vector<R> {
+pub fn scale<R: Real>(v: Vector<R>, s: R) -> Vector<R> {
     [v[0] * s, v[1] * s, v[2] * s]
 }
 
 /// a + b.
+#[must_use]
 #[inline(always)]
-fn add<R: Real>(a: Vector<R>, b: Vector<R>) -> Vector<R> {
+pub fn add<R: Real>(a: Vector<R>, b: Vector<R>) -> Vector<R> {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
 /// a − b.
+#[must_use]
 #[inline(always)]
-fn subtract<R: Real>(a: Vector<R>, b: Vector<R>) -> Vector<R> {
+pub fn subtract<R: Real>(a: Vector<R>, b: Vector<R>) -> Vector<R> {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 

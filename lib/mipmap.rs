@@ -62,7 +62,7 @@ impl MipMaps {
                 [level.width() as usize, level.height() as usize, texels.len() >> row_bits];
             levels.push([width as f64, height as f64, below as f64]);
             for row in 0..height {
-                texels.extend((0..width).map(|column| level.color(column, row)));
+                texels.extend_from_slice(level.row(row));
                 texels.resize((below + row + 1) << row_bits, Color::BLACK);
             }
             next = (width.max(height) > 1).then(|| halved(&level));

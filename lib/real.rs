@@ -44,6 +44,16 @@ pub trait Real:
 
     /// A literal: the number nearest to `value`.
     fn of(value: f64) -> Self;
+    /// Several literals: a vector or a color that is the same everywhere.
+    #[inline(always)]
+    #[must_use]
+    fn array_of<const N: usize>(values: [f64; N]) -> [Self; N] {
+        each(
+            [Self::of(0.0); N],
+            #[inline(always)]
+            |k, _| Self::of(values[k]),
+        )
+    }
     /// The lesser of two numbers: this one if it is less, else the other one. So the other one if either is NaN, and of two
     /// zeros, whatever their signs.
     #[must_use]
@@ -102,9 +112,10 @@ pub fn each<T: Copy, const N: usize>(mut numbers: [T; N], change: impl Fn(usize,
         };
     }
     change!(0 1 2 3 4 5 6 7);
-    // Not only if there are more than eight: without this loop LLVM makes the exact rasterizer a fifth slower.
-    for (k, number) in numbers.iter_mut().enumerate().skip(8) {
-        *number = change(k, *number);
+    let mut k = 8;
+    while k < N {
+        numbers[k] = change(k, numbers[k]);
+        k += 1;
     }
     numbers
 }
@@ -218,7 +229,8 @@ macro_rules! plain_number {
                 values: [Self; N],
                 function: impl Fn([f64; N]) -> [f64; M],
             ) -> [Self; M] {
-                function(values.map(f64::from)).map(Self::of)
+                let values = each([0.0; N], |k, _| f64::from(values[k]));
+                Self::array_of(function(values))
             }
 
             #[inline]
@@ -227,7 +239,7 @@ macro_rules! plain_number {
                 row: Self,
                 table: impl Fn(usize, usize) -> [f64; C],
             ) -> [Self; C] {
-                table(column as usize, row as usize).map(Self::of)
+                Self::array_of(table(column as usize, row as usize))
             }
 
             #[inline]
@@ -239,7 +251,7 @@ macro_rules! plain_number {
 
             #[inline]
             fn channels(color: Color) -> [Self; 3] {
-                color.channels().map(Self::from)
+                map3(color.channels(), Self::from)
             }
         }
     };

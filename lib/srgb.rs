@@ -23,7 +23,7 @@
 use std::array::from_fn;
 use std::sync::LazyLock;
 
-use crate::real::Real;
+use crate::real::{Real, map3};
 
 // ANCHOR: tables
 /// The light of an encoded value c, both in 0..=1: c / 12.92 for c ≤ 0.04045,
@@ -52,7 +52,7 @@ static STEPS: LazyLock<[u8; 4096]> =
 #[inline]
 pub fn decode<R: Real>(stored: [R; 3]) -> [R; 3] {
     let light: &[f64; 256] = &LIGHT;
-    from_fn(|k| stored[k].map(|value| light[usize::from(value as u8)]))
+    map3(stored, |channel| channel.map(|value| light[usize::from(value as u8)]))
 }
 
 /// Light, 0..=1 → the nearest stored channels, whole numbers in 0..=255; more light than 1 gives 255, NaN 0.
@@ -65,7 +65,7 @@ pub fn encode<R: Real>(light: [R; 3]) -> [R; 3] {
         let is_next = borders.get(usize::from(value)).is_some_and(|&border| border <= amount);
         f64::from(value) + f64::from(u8::from(is_next))
     };
-    from_fn(|k| light[k].map(value))
+    map3(light, |amount| amount.map(value))
 }
 
 #[cfg(test)]

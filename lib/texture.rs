@@ -191,6 +191,11 @@ impl Texture {
         [R::from(self.columns), R::from(self.rows)]
     }
 
+    /// A row of texels, from left to right.
+    pub(crate) fn row(&self, row: usize) -> &[Color] {
+        &self.texels[row << self.row_bits..][..self.width() as usize]
+    }
+
     /// A texel by its column and row.
     #[inline(always)]
     pub(crate) fn color(&self, column: usize, row: usize) -> Color {

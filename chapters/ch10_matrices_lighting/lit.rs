@@ -6,6 +6,7 @@ use rasterbook::figure::{Canvas, Knob, Subject};
 use rasterbook::light::lambert;
 use rasterbook::model::ModelVertex;
 use rasterbook::payload::{StepClamp, Walk};
+use rasterbook::real::each;
 use rasterbook::texture::{AddressMode, Texture};
 use rasterbook::transform::{Frustum, about, rotate_x_to_y, rotate_z_to_y};
 use rasterbook::{ClipVertex, Real, RenderState, Shaded, Shader};
@@ -61,11 +62,10 @@ impl Shader<5> for Lit {
     }
 
     fn fragment<R: Real>(&self, [u, v, nx, ny, nz]: [R; 5]) -> Shaded<R> {
-        let diffuse = lambert([nx, ny, nz], self.to_light.map(R::of));
+        let diffuse = lambert([nx, ny, nz], R::array_of(self.to_light));
         let brightness = (diffuse + R::of(self.ambient)).min(R::of(1.0));
-        Shaded::opaque(
-            self.texture.nearest([u, v], AddressMode::Repeat).map(|channel| brightness * channel),
-        )
+        let texel = self.texture.nearest([u, v], AddressMode::Repeat);
+        Shaded::opaque(each(texel, |_, channel| brightness * channel))
     }
 }
 // ANCHOR_END: lit_shader

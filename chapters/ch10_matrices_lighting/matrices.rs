@@ -5,6 +5,7 @@ use rasterbook::cull::CullMode;
 use rasterbook::figure::{Canvas, Knob, Knobs, assets};
 use rasterbook::light::lambert;
 use rasterbook::model::ModelVertex;
+use rasterbook::real::each;
 use rasterbook::texture::{AddressMode, Texture};
 use rasterbook::transform::{
     Frustum, Viewport, about, look_at, normal_matrix, rotate_x_to_y, rotate_x_to_z, scale,
@@ -112,7 +113,7 @@ impl Shader<0> for Plain {
     }
 
     fn fragment<R: Real>(&self, _: [R; 0]) -> Shaded<R> {
-        Shaded::opaque(self.color.to_f64().map(R::of))
+        Shaded::opaque(R::array_of(self.color.to_f64()))
     }
 }
 
@@ -201,11 +202,10 @@ impl Shader<5> for LitInWorld {
     }
 
     fn fragment<R: Real>(&self, [u, v, nx, ny, nz]: [R; 5]) -> Shaded<R> {
-        let to_light = [-0.48, 0.8, -0.36].map(R::of);
+        let to_light = R::array_of([-0.48, 0.8, -0.36]);
         let brightness = lambert([nx, ny, nz], to_light) * R::of(0.75) + R::of(0.25);
-        Shaded::opaque(
-            self.texture.nearest([u, v], AddressMode::Repeat).map(|channel| brightness * channel),
-        )
+        let texel = self.texture.nearest([u, v], AddressMode::Repeat);
+        Shaded::opaque(each(texel, |_, channel| brightness * channel))
     }
 }
 

@@ -141,8 +141,9 @@ struct Ball {
 
 impl Ball {
     fn light<R: Real>(&self, view: [R; 3], normal: [R; 3]) -> [R; 3] {
-        let to_eye = normalize(view.map(|coordinate| -coordinate));
-        self.material.shade(self.color.map(R::of), normalize(normal), self.light.at(view), to_eye)
+        let [x, y, z] = view;
+        let to_eye = normalize([-x, -y, -z]);
+        self.material.shade(R::array_of(self.color), normalize(normal), self.light.at(view), to_eye)
     }
 }
 

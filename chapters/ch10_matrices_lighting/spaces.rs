@@ -2,7 +2,8 @@
 
 use glam::{DVec2, DVec4, dvec4};
 use rasterbook::figure::{Canvas, Knob};
-use rasterbook::light::{lambert, normalize};
+use rasterbook::light::{add, lambert, normalize, scale};
+use rasterbook::real::each;
 use rasterbook::srgb::{decode, encode};
 use rasterbook::{ClipVertex, Color, Mesh, Real, RenderState, Shaded, Shader};
 
@@ -28,7 +29,7 @@ impl Space {
     /// An encoded color, 0..=255 → what is computed with, 0..=1.
     fn enter<R: Real>(self, stored: [R; 3]) -> [R; 3] {
         match self {
-            Self::Gamma => stored.map(|channel| channel / R::of(255.0)),
+            Self::Gamma => each(stored, |_, channel| channel / R::of(255.0)),
             Self::Linear => decode(stored),
         }
     }
@@ -36,7 +37,7 @@ impl Space {
     /// And back.
     fn leave<R: Real>(self, computed: [R; 3]) -> [R; 3] {
         match self {
-            Self::Gamma => computed.map(|channel| channel * R::of(255.0)),
+            Self::Gamma => scale(computed, R::of(255.0)),
             Self::Linear => encode(computed),
         }
     }
@@ -74,31 +75,33 @@ impl Shader<3> for Rectangle {
 
     fn fragment<R: Real>(&self, [x, y, column]: [R; 3]) -> Shaded<R> {
         let (zero, one) = (R::of(0.0), R::of(1.0));
-        let [black, white] = [Color::BLACK, Color::WHITE].map(|color| color.to_f64().map(R::of));
-        let [red, green] = [Color::RED, Color::GREEN].map(|color| color.to_f64().map(R::of));
-        let light = |stored| self.space.enter(stored);
-        let mix = |a: [R; 3], b: [R; 3], t: R| [0, 1, 2].map(|k| a[k] * (one - t) + b[k] * t);
+        let stored = |color: Color| R::array_of(color.to_f64());
+        let light = |color| self.space.enter(stored(color));
+        let mix = |a: [R; 3], b: [R; 3], t: R| add(scale(a, one - t), scale(b, t));
         match self.sample {
             Sample::Ball => {
                 let square = one - x * x - y * y;
                 let normal = [x, y, -square.max(zero).sqrt()];
                 let to_light = normalize([R::of(0.8), R::of(0.35), R::of(-0.5)]);
                 let bright = lambert(normal, to_light);
-                Shaded::opaque(self.space.leave(light(white).map(|channel| channel * bright)))
+                Shaded::opaque(self.space.leave(scale(light(Color::WHITE), bright)))
                     .discard(square.is_less(zero))
             }
             Sample::Mixture => Shaded::opaque(self.space.leave(mix(
-                light(red),
-                light(green),
+                light(Color::RED),
+                light(Color::GREEN),
                 (x + one) * R::of(0.5),
             ))),
-            Sample::Mean => {
-                Shaded::opaque(self.space.leave(mix(light(black), light(white), R::of(self.white))))
-            }
+            Sample::Mean => Shaded::opaque(self.space.leave(mix(
+                light(Color::BLACK),
+                light(Color::WHITE),
+                R::of(self.white),
+            ))),
             Sample::Stripes => {
                 let period = column * R::of(self.white);
                 let is_black = (period - period.floor()).is_less(R::of(1.0 - self.white));
-                Shaded::opaque([0, 1, 2].map(|k| R::select(is_black, black[k], white[k])))
+                let (black, white) = (stored(Color::BLACK), stored(Color::WHITE));
+                Shaded::opaque(each(black, |k, black| R::select(is_black, black, white[k])))
             }
         }
     }

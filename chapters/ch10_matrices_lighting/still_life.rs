@@ -7,10 +7,11 @@ use glam::{DMat4, DVec3, dvec3};
 use rasterbook::area::Winding;
 use rasterbook::cull::CullMode;
 use rasterbook::figure::{Canvas, Knob, assets};
-use rasterbook::light::{blinn_phong, dot, lambert, normalize};
+use rasterbook::light::{blinn_phong, dot, lambert, normalize, subtract};
 use rasterbook::merge::{Blend, Merge};
 use rasterbook::mipmap::MipMaps;
 use rasterbook::model::ModelVertex;
+use rasterbook::real::each;
 use rasterbook::srgb::{decode, encode};
 use rasterbook::texture::{AddressMode, Texture};
 use rasterbook::transform::{Frustum, look_at, normal_matrix, rotate_x_to_z, scale, translate};
@@ -117,16 +118,16 @@ impl Shader<8> for Thing {
 impl Thing {
     fn shade<R: Real>(&self, place: [R; 3], normal: [R; 3], texel: [R; 3]) -> Shaded<R> {
         let normal = normalize(normal);
-        let to_eye = normalize(from_fn(|i| R::of(self.view.eye[i]) - place[i]));
-        let to_light = self.view.to_light.map(R::of);
+        let to_eye = normalize(subtract(R::array_of(self.view.eye), place));
+        let to_light = R::array_of(self.view.to_light);
         let diffuse = lambert(normal, to_light);
         let gloss = blinn_phong(normal, to_light, to_eye, 60.0) * R::of(0.55);
         // What turns down sees the floor, not the sky.
         let open = normal[1] * R::of(0.4) + R::of(0.6);
         let surface = decode(texel);
-        let light = from_fn(|k| {
+        let light = each(surface, |k, reflected| {
             let body = R::of(SKY[k]) * open + R::of(SUN[k]) * diffuse;
-            surface[k] * R::of(self.tint[k]) * body + R::of(SUN[k]) * gloss
+            reflected * R::of(self.tint[k]) * body + R::of(SUN[k]) * gloss
         });
         Shaded::opaque(encode(light))
     }
@@ -155,8 +156,11 @@ impl Shader<2> for Board {
     }
 
     fn fragment<R: Real>(&self, [x, z]: [R; 2]) -> Shaded<R> {
-        let texel =
-            self.texture.bilinear([x, z].map(|c| c * R::of(0.5)), R::of(0.0), AddressMode::Repeat);
+        let texel = self.texture.bilinear(
+            [x * R::of(0.5), z * R::of(0.5)],
+            R::of(0.0),
+            AddressMode::Repeat,
+        );
         self.shade(x, z, texel)
     }
 
@@ -165,7 +169,7 @@ impl Shader<2> for Board {
         [x, z]: [R; 2],
         change: Derivatives<R, 2>,
     ) -> Shaded<R> {
-        let half = |pair: [R; 2]| pair.map(|c| c * R::of(0.5));
+        let half = |pair: [R; 2]| [pair[0] * R::of(0.5), pair[1] * R::of(0.5)];
         let level = self.texture.level_of_detail(half(change.dx), half(change.dy));
         self.shade(x, z, self.texture.trilinear(half([x, z]), level, AddressMode::Repeat))
     }
@@ -179,7 +183,7 @@ impl Board {
         let way = |center: [f64; 3]| [R::of(center[0]) - x, R::of(center[1]), R::of(center[2]) - z];
         for &(center, radius) in &self.sun {
             let way = way(center);
-            let along = dot(way, to_light.map(R::of));
+            let along = dot(way, R::array_of(to_light));
             let distance = (dot(way, way) - along * along).max(zero).sqrt();
             // The farther the ball, the softer its shadow.
             let soft = along.max(zero) * R::of(0.05) + R::of(0.015);
@@ -192,14 +196,15 @@ impl Board {
             sky = sky * (one - (hidden * R::of(0.8)).min(R::of(0.8)));
         }
         let surface = decode(texel);
-        let light =
-            from_fn(|k| surface[k] * (R::of(SKY[k]) * sky + R::of(SUN[k] * to_light[1]) * sun));
+        let light = each(surface, |k, reflected| {
+            reflected * (R::of(SKY[k]) * sky + R::of(SUN[k] * to_light[1]) * sun)
+        });
         // Far away the board fades into the horizon.
         let [dx, dz] = [x - R::of(self.view.eye[0]), z - R::of(self.view.eye[2])];
         let far = ((dx * dx + dz * dz).sqrt() * R::of(1.0 / 26.0)).min(one);
         let fade = far * far;
         let (color, horizon) = (encode(light), HORIZON.to_f64());
-        let color = from_fn(|k| color[k] + (R::of(horizon[k]) - color[k]) * fade);
+        let color = each(color, |k, near| near + (R::of(horizon[k]) - near) * fade);
         // Seen at a flat angle a polished board reflects more.
         Shaded::translucent(color, R::of(self.opacity) + fade * R::of(1.0 - self.opacity))
     }

@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use glam::{DMat4, DVec3, dvec3};
 use rasterbook::figure::{Canvas, Knob, assets};
+use rasterbook::light::{add, scale};
 use rasterbook::mipmap::MipMaps;
 use rasterbook::texture::{AddressMode, Texture};
 use rasterbook::transform::{Frustum, look_at};
@@ -83,7 +84,7 @@ impl Shader<2> for Floor {
     ) -> Shaded<R> {
         // A change that is twice as large asks for the next level.
         let larger = R::of(libm::exp2(self.bias));
-        let [dx, dy] = [change.dx, change.dy].map(|way| way.map(|change| change * larger));
+        let [dx, dy] = [change.dx, change.dy].map(|[u, v]| [u * larger, v * larger]);
         let level = self.maps.level_of_detail(dx, dy);
         Shaded::opaque(match self.filter {
             Filter::Nearest => self.texture.nearest(uv, self.mode),
@@ -93,7 +94,7 @@ impl Shader<2> for Floor {
             Filter::Levels => {
                 let texel = self.maps.bilinear(uv, level, self.mode);
                 let tint = R::gather(level + R::of(0.5), R::of(0.0), |level, _| tint(level));
-                [0, 1, 2].map(|k| texel[k] * R::of(0.5) + tint[k] * R::of(0.5))
+                scale(add(texel, tint), R::of(0.5))
             }
         })
     }

@@ -1,13 +1,12 @@
 //! A model of your own, seen from anywhere: framed by its bounds, lit from the side, drawn from both sides.
 
-use std::array::from_fn;
-
 use glam::{DMat4, DVec3};
 use rasterbook::cull::CullMode;
 use rasterbook::figure::{Canvas, Knob, Subject};
-use rasterbook::light::{blinn_phong, lambert, normalize};
+use rasterbook::light::{blinn_phong, lambert, normalize, scale, subtract};
 use rasterbook::mipmap::MipMaps;
 use rasterbook::model::ModelVertex;
+use rasterbook::real::each;
 use rasterbook::texture::{AddressMode, Texture};
 use rasterbook::transform::{Frustum, look_at};
 use rasterbook::varyings::Derivatives;
@@ -125,9 +124,9 @@ impl Shader<8> for Surface<'_> {
 impl Surface<'_> {
     /// How much light a place sends to the eye: from the surface's own color, and as a highlight.
     fn light<R: Real>(&self, place: [R; 3], normal: [R; 3]) -> [R; 2] {
-        let normal = normalize(normal.map(|part| part * R::of(self.side)));
-        let to_light = self.to_light.to_array().map(R::of);
-        let to_eye = normalize(from_fn(|i| R::of(self.eye[i]) - place[i]));
+        let normal = normalize(scale(normal, R::of(self.side)));
+        let to_light = R::array_of(self.to_light.to_array());
+        let to_eye = normalize(subtract(R::array_of(self.eye.to_array()), place));
         let diffuse = lambert(normal, to_light) * R::of(LAMP);
         let gloss = blinn_phong(normal, to_light, to_eye, self.exponent) * R::of(0.18);
         // From the ground to the sky, as far as the normal points up.
@@ -141,7 +140,7 @@ impl Surface<'_> {
         let [body, gloss] =
             if self.lit_at_vertices { [normal[0], normal[1]] } else { self.light(place, normal) };
         // A square and a square root in place of the transfer function: nearly the same, and fast enough to be dragged.
-        Shaded::opaque(texel.map(|channel| {
+        Shaded::opaque(each(texel, |_, channel| {
             let surface = channel * channel * R::of(1.0 / (255.0 * 255.0));
             (surface * body + gloss).min(R::of(1.0)).sqrt() * R::of(255.0)
         }))

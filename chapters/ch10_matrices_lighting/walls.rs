@@ -88,10 +88,10 @@ impl Shader<5> for Wall {
         let uv = [u * R::of(0.5), v * R::of(0.5)];
         let [tangent, bitangent, upright] = self.axes;
         let axes = [tangent * self.strength, bitangent * self.strength, upright];
-        let axes = axes.map(|axis| axis.to_array().map(R::of));
+        let axes = axes.map(|axis| R::array_of(axis.to_array()));
         let normal = mapped_normal(self.normals.bilinear(uv, AddressMode::Repeat), axes);
         let color = self.colors.bilinear(uv, AddressMode::Repeat);
-        let to_eye = normalize(place.map(|coordinate| -coordinate));
+        let to_eye = normalize([-x, -y, -z]);
         Shaded::opaque(CLAY.shade(color, normal, self.lamp.at(place), to_eye))
     }
 }

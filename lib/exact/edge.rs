@@ -22,13 +22,12 @@
 //! # Ok::<(), &str>(())
 //! ```
 
-use std::array::from_fn;
 use std::ops::Range;
 
 use glam::{DVec2, dvec2};
 
 use crate::area::Winding;
-use crate::real::{Real, Scalar, map3};
+use crate::real::{Real, Scalar, each, map3};
 use crate::rect::Rect;
 use crate::scissor::Scissor;
 use crate::varyings::{WeightGradients, weight_gradients};
@@ -56,7 +55,8 @@ pub fn center(x: i32, y: i32) -> Subpixel {
 #[inline]
 pub fn snap(position: DVec2) -> Option<Subpixel> {
     let is_near = position.abs().max_element() <= FARTHEST && !position.is_nan();
-    is_near.then(|| position.to_array().map(|c| (c * SUBPIXELS as f64).round() as i64))
+    let rounded = |coordinate: f64| (coordinate * SUBPIXELS as f64).round() as i64;
+    is_near.then(|| [rounded(position.x), rounded(position.y)])
 }
 
 // ANCHOR: edge_function
@@ -142,7 +142,7 @@ impl EdgeFunction {
     /// − value: from some column on where the function grows, up to some column where it falls.
     #[inline]
     fn columns(&self, columns: Range<i32>, value: i64) -> Range<i32> {
-        let [start, end] = [columns.start, columns.end].map(i64::from);
+        let (start, end) = (i64::from(columns.start), i64::from(columns.end));
         let (step, missing) = (self.step_x * SUBPIXELS, self.least() - value);
         let covered = match step {
             1.. => start - (-missing).div_euclid(step)..end,
@@ -150,8 +150,8 @@ impl EdgeFunction {
             0 => start..end,
             _ => start..start + (-missing).div_euclid(-step) + 1,
         };
-        let [first, end] = [covered.start, covered.end].map(|it| it.max(start).min(end) as i32);
-        first..end
+        let limited = |column: i64| column.max(start).min(end) as i32;
+        limited(covered.start)..limited(covered.end)
     }
 }
 
@@ -169,7 +169,7 @@ pub(crate) fn is_top_left<I: PartialOrd + Default>(step_x: I, step_y: I) -> bool
 /// How the weights of the second and the third of three vertices change from pixel to pixel.
 #[inline]
 pub(crate) fn gradients_between<R: Real>(vertices: [Subpixel; 3]) -> WeightGradients<R> {
-    weight_gradients(vertices.map(|[x, y]| dvec2(x as f64, y as f64) / SUBPIXELS as f64))
+    weight_gradients(map3(vertices, |[x, y]| dvec2(x as f64, y as f64) / SUBPIXELS as f64))
 }
 
 // ANCHOR: coverage
@@ -231,8 +231,8 @@ impl Coverage {
     #[inline]
     pub fn weights<R: Scalar>(&self, [_, second, third]: [i64; 3]) -> [R; 2] {
         // Whole numbers of up to 53 bits are exact in `f64`; `of` rounds once.
-        let [second, third, area] = [second, third, self.twice_area].map(|it| R::of(it as f64));
-        let one_over_area = R::of(1.0) / area;
+        let (second, third) = (R::of(second as f64), R::of(third as f64));
+        let one_over_area = R::of(1.0) / R::of(self.twice_area as f64);
         [second * one_over_area, third * one_over_area]
     }
 
@@ -260,7 +260,7 @@ impl Coverage {
     #[must_use]
     #[inline]
     pub fn bounding_box(&self, rect: Rect) -> Rect {
-        let [xs, ys] = [0, 1].map(|axis| self.vertices.map(|vertex| vertex[axis]));
+        let (xs, ys) = (map3(self.vertices, |[x, _]| x), map3(self.vertices, |[_, y]| y));
         // The first center that is not below the lowest, and the one after the last that is not
         // above the highest.
         let first = |values: [i64; 3]| {
@@ -314,7 +314,7 @@ impl Coverage {
         let steps = map3(self.edges, |edge| edge.step_x * SUBPIXELS);
         covered.map(move |x| {
             let here = values;
-            values = from_fn(|i| here[i] + steps[i]);
+            values = each(here, |i, value| value + steps[i]);
             (x, here)
         })
     }

@@ -62,6 +62,7 @@ impl Event {
 }
 
 /// The pixel of the current screen that a pixel of the picture shows.
+#[inline]
 pub(super) fn within(pixel: Pixel, enlargement: Option<Enlargement>) -> Pixel {
     enlargement.map_or(pixel, |enlargement| enlargement.pixel_at(pixel))
 }

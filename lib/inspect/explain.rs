@@ -231,6 +231,7 @@ impl Explainer {
     }
 
     /// The pixel on the screen that is being drawn on.
+    #[inline]
     pub(super) fn here(&self) -> Pixel {
         within(self.pixel, self.enlargement)
     }

@@ -47,6 +47,7 @@ pub fn histories(
 struct Recorder(Mutex<Vec<Explainer>>);
 
 impl Recorder {
+    #[inline]
     fn lock(&self) -> MutexGuard<'_, Vec<Explainer>> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }

@@ -5,22 +5,25 @@
 //! knows once everything is inlined: nothing of it is left in the program.
 
 use std::arch::x86_64::{
-    _bzhi_u32, _mm_cvtsi64_si128, _mm_setr_epi8, _mm256_and_pd, _mm256_and_si256,
-    _mm256_broadcastsi128_si256, _mm256_castps_si256, _mm256_cvtepi32_ps, _mm256_cvtepu8_epi32,
-    _mm256_movemask_ps, _mm256_or_pd, _mm256_or_ps, _mm256_packs_epi32, _mm256_packus_epi16,
-    _mm256_permute2f128_ps, _mm256_set1_epi32, _mm256_set1_pd, _mm256_setzero_si256, _mm256_shuffle_epi8,
-    _mm256_shuffle_ps, _mm256_srli_epi32, _mm256_sub_epi32, _mm256_unpackhi_ps, _mm256_unpacklo_ps,
-    _mm256_xor_pd,
+    _CMP_LE_OQ, _CMP_LT_OQ, _bzhi_u32, _mm_cvtsi32_si128, _mm_cvtsi64_si128, _mm_setr_epi8, _mm256_add_epi32,
+    _mm256_add_ps, _mm256_and_pd, _mm256_and_si256, _mm256_blendv_epi8, _mm256_blendv_ps,
+    _mm256_broadcastsi128_si256, _mm256_castps_si256, _mm256_castsi256_ps, _mm256_cmp_ps, _mm256_cmpeq_epi32,
+    _mm256_cvtepi32_ps, _mm256_cvtepu8_epi32, _mm256_cvttps_epi32, _mm256_div_ps, _mm256_floor_ps,
+    _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_or_pd, _mm256_or_ps,
+    _mm256_packs_epi32, _mm256_packus_epi16, _mm256_permute2f128_ps, _mm256_set1_epi32, _mm256_set1_pd,
+    _mm256_set1_ps, _mm256_setr_epi32, _mm256_setzero_si256, _mm256_shuffle_epi8, _mm256_shuffle_ps,
+    _mm256_sll_epi32, _mm256_sqrt_ps, _mm256_srl_epi32, _mm256_srli_epi32, _mm256_sub_epi32, _mm256_sub_ps,
+    _mm256_unpackhi_ps, _mm256_unpacklo_ps, _mm256_xor_pd, _mm256_xor_ps, _mm256_xor_si256,
 };
 use std::array::from_fn;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use bytemuck::cast;
 pub(super) use fearless_simd::Avx2;
-use fearless_simd::{Level, Simd, SimdInto, SimdMask, f32x8, f64x4, i32x8, kernel, mask32x8, mask64x4};
+use fearless_simd::{Level, Simd, SimdFrom, SimdMask, f32x8, f64x4, i32x8, kernel, mask32x8, mask64x4};
 
 use super::instruction_set::{Four, InstructionSet};
-use super::lanes::{ALL, Block, LANES};
+use super::lanes::{ALL, Block, LANES, each_lane};
 use crate::color::Color;
 use crate::real::{Mask, Real, sealed};
 
@@ -44,14 +47,78 @@ type Answers = OneOrEight<bool, mask32x8<Avx2>>;
 /// 0x00RRGGBB.
 type Words = OneOrEight<u32, i32x8<Avx2>>;
 
+/// Functions of eight values, each of one instruction or a few.
+///
+/// The crate has most of them as methods. But these call a function, `simd_into`, that need not be inlined, and without
+/// link-time optimisation, as in the dev profile, it is not: `tiled` took twice as long.
+macro_rules! instructions {
+    ($($(#[$attribute:meta])* fn $name:ident($($argument:ident: $type:ty),*) -> $result:ty = $vector:expr;)*) => {$(
+        kernel!(
+            $(#[$attribute])*
+            #[inline(always)]
+            fn $name(avx2: Avx2, $($argument: $type),*) -> $result {
+                SimdFrom::simd_from(avx2, $vector)
+            }
+        );
+    )*};
+}
+
+instructions! {
+    fn splat(number: f32) -> f32x8<Avx2> = _mm256_set1_ps(number);
+    fn add(a: f32x8<Avx2>, b: f32x8<Avx2>) -> f32x8<Avx2> = _mm256_add_ps(a.into(), b.into());
+    fn sub(a: f32x8<Avx2>, b: f32x8<Avx2>) -> f32x8<Avx2> = _mm256_sub_ps(a.into(), b.into());
+    fn mul(a: f32x8<Avx2>, b: f32x8<Avx2>) -> f32x8<Avx2> = _mm256_mul_ps(a.into(), b.into());
+    fn div(a: f32x8<Avx2>, b: f32x8<Avx2>) -> f32x8<Avx2> = _mm256_div_ps(a.into(), b.into());
+    fn neg(a: f32x8<Avx2>) -> f32x8<Avx2> = _mm256_xor_ps(a.into(), _mm256_set1_ps(-0.0));
+    fn min(a: f32x8<Avx2>, b: f32x8<Avx2>) -> f32x8<Avx2> = _mm256_min_ps(a.into(), b.into());
+    fn max(a: f32x8<Avx2>, b: f32x8<Avx2>) -> f32x8<Avx2> = _mm256_max_ps(a.into(), b.into());
+    fn floor(a: f32x8<Avx2>) -> f32x8<Avx2> = _mm256_floor_ps(a.into());
+    fn sqrt(a: f32x8<Avx2>) -> f32x8<Avx2> = _mm256_sqrt_ps(a.into());
+    fn whole(a: f32x8<Avx2>) -> i32x8<Avx2> = _mm256_cvttps_epi32(a.into());
+
+    fn is_less(a: f32x8<Avx2>, b: f32x8<Avx2>) -> mask32x8<Avx2>
+        = _mm256_castps_si256(_mm256_cmp_ps::<_CMP_LT_OQ>(a.into(), b.into()));
+    fn is_less_or_equal(a: f32x8<Avx2>, b: f32x8<Avx2>) -> mask32x8<Avx2>
+        = _mm256_castps_si256(_mm256_cmp_ps::<_CMP_LE_OQ>(a.into(), b.into()));
+    fn and(a: mask32x8<Avx2>, b: mask32x8<Avx2>) -> mask32x8<Avx2> = _mm256_and_si256(a.into(), b.into());
+    fn not(a: mask32x8<Avx2>) -> mask32x8<Avx2> = _mm256_xor_si256(a.into(), _mm256_set1_epi32(-1));
+    fn mask(bits: i32) -> mask32x8<Avx2> = {
+        let bit_of_lane = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+        _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(bits), bit_of_lane), bit_of_lane)
+    };
+    fn select(mask: mask32x8<Avx2>, yes: f32x8<Avx2>, no: f32x8<Avx2>) -> f32x8<Avx2>
+        = _mm256_blendv_ps(no.into(), yes.into(), _mm256_castsi256_ps(mask.into()));
+    fn select_words(mask: mask32x8<Avx2>, yes: i32x8<Avx2>, no: i32x8<Avx2>) -> i32x8<Avx2>
+        = _mm256_blendv_epi8(no.into(), yes.into(), mask.into());
+
+    fn splat_word(word: u32) -> i32x8<Avx2> = _mm256_set1_epi32(word.cast_signed());
+    fn numbers_of(words: i32x8<Avx2>) -> f32x8<Avx2> = _mm256_cvtepi32_ps(words.into());
+    fn shifted_left(words: i32x8<Avx2>, by: u32) -> i32x8<Avx2>
+        = _mm256_sll_epi32(words.into(), _mm_cvtsi32_si128(by.cast_signed()));
+    /// The byte from this bit on.
+    fn byte(words: i32x8<Avx2>, bit: u32) -> f32x8<Avx2>
+        = _mm256_cvtepi32_ps(_mm256_and_si256(
+            _mm256_srl_epi32(words.into(), _mm_cvtsi32_si128(bit.cast_signed())),
+            _mm256_set1_epi32(0xFF),
+        ));
+    fn add_words(a: i32x8<Avx2>, b: i32x8<Avx2>) -> i32x8<Avx2> = _mm256_add_epi32(a.into(), b.into());
+}
+
+kernel!(
+    #[inline(always)]
+    fn bits_of(_avx2: Avx2, mask: mask32x8<Avx2>) -> i32 {
+        _mm256_movemask_ps(_mm256_castsi256_ps(mask.into()))
+    }
+);
+
 /// Does something with one number and another one, or with eight and eight.
 macro_rules! with_both {
     ($a:expr, $b:expr, $one:expr, $eight:ident) => {
         match ($a, $b) {
             (One(a), One(b)) => One($one(a, b)),
-            (One(a), Eight(b)) => Eight(b.simd.$eight(b.simd.splat_f32x8(a), b)),
-            (Eight(a), One(b)) => Eight(a.simd.$eight(a, a.simd.splat_f32x8(b))),
-            (Eight(a), Eight(b)) => Eight(a.simd.$eight(a, b)),
+            (One(a), Eight(b)) => Eight($eight(b.simd, splat(b.simd, a), b)),
+            (Eight(a), One(b)) => Eight($eight(a.simd, a, splat(a.simd, b))),
+            (Eight(a), Eight(b)) => Eight($eight(a.simd, a, b)),
         }
     };
 }
@@ -70,10 +137,10 @@ macro_rules! operator {
     };
 }
 
-operator!(Add, add, add_f32x8);
-operator!(Sub, sub, sub_f32x8);
-operator!(Mul, mul, mul_f32x8);
-operator!(Div, div, div_f32x8);
+operator!(Add, add, add);
+operator!(Sub, sub, sub);
+operator!(Mul, mul, mul);
+operator!(Div, div, div);
 // ANCHOR_END: one_or_eight
 
 impl Neg for Numbers {
@@ -83,7 +150,7 @@ impl Neg for Numbers {
     fn neg(self) -> Self {
         match self {
             One(number) => One(-number),
-            Eight(numbers) => Eight(numbers.simd.neg_f32x8(numbers)),
+            Eight(numbers) => Eight(neg(numbers.simd, numbers)),
         }
     }
 }
@@ -99,7 +166,7 @@ impl Numbers {
     #[inline(always)]
     fn eight(self, avx2: Avx2) -> f32x8<Avx2> {
         match self {
-            One(number) => avx2.splat_f32x8(number),
+            One(number) => splat(avx2, number),
             Eight(numbers) => numbers,
         }
     }
@@ -125,7 +192,7 @@ impl Words {
     #[inline(always)]
     fn eight(self, avx2: Avx2) -> i32x8<Avx2> {
         match self {
-            One(word) => avx2.splat_i32x8(word.cast_signed()),
+            One(word) => splat_word(avx2, word),
             Eight(words) => words,
         }
     }
@@ -145,12 +212,6 @@ impl PartialEq for Words {
     }
 }
 
-/// What a function gives for each lane. (That of the standard library need not be inlined.)
-#[inline(always)]
-fn each_lane<T>(of: impl Fn(usize) -> T) -> [T; LANES] {
-    [of(0), of(1), of(2), of(3), of(4), of(5), of(6), of(7)]
-}
-
 impl sealed::Sealed for Answers {}
 
 impl Mask for Answers {
@@ -162,7 +223,7 @@ impl Mask for Answers {
     #[inline(always)]
     fn and(self, other: Self) -> Self {
         match (self, other) {
-            (Eight(a), Eight(b)) => Eight(a.witness().and_mask32x8(a, b)),
+            (Eight(a), Eight(b)) => Eight(and(a.witness(), a, b)),
             (One(true), answers) | (answers, One(true)) => answers,
             (One(false), _) | (_, One(false)) => One(false),
         }
@@ -172,7 +233,7 @@ impl Mask for Answers {
     fn not(self) -> Self {
         match self {
             One(answer) => One(!answer),
-            Eight(answers) => Eight(answers.witness().not_mask32x8(answers)),
+            Eight(answers) => Eight(not(answers.witness(), answers)),
         }
     }
 }
@@ -191,19 +252,19 @@ impl Real for Numbers {
     #[inline(always)]
     fn min(self, other: Self) -> Self {
         // The instruction is this very comparison, NaN and zeros included, as for one number.
-        with_both!(self, other, <f32 as Real>::min, min_f32x8)
+        with_both!(self, other, <f32 as Real>::min, min)
     }
 
     #[inline(always)]
     fn max(self, other: Self) -> Self {
-        with_both!(self, other, <f32 as Real>::max, max_f32x8)
+        with_both!(self, other, <f32 as Real>::max, max)
     }
 
     #[inline(always)]
     fn floor(self) -> Self {
         match self {
             One(number) => One(number.floor()),
-            Eight(numbers) => Eight(numbers.simd.floor_f32x8(numbers)),
+            Eight(numbers) => Eight(floor(numbers.simd, numbers)),
         }
     }
 
@@ -211,13 +272,13 @@ impl Real for Numbers {
     fn sqrt(self) -> Self {
         match self {
             One(number) => One(number.sqrt()),
-            Eight(numbers) => Eight(numbers.simd.sqrt_f32x8(numbers)),
+            Eight(numbers) => Eight(sqrt(numbers.simd, numbers)),
         }
     }
 
     #[inline(always)]
     fn is_less(self, other: Self) -> Answers {
-        with_both!(self, other, <f32 as Real>::is_less, simd_lt_f32x8)
+        with_both!(self, other, <f32 as Real>::is_less, is_less)
     }
 
     #[inline(always)]
@@ -227,7 +288,7 @@ impl Real for Numbers {
             One(false) => no,
             Eight(answers) => {
                 let avx2 = answers.witness();
-                Eight(avx2.select_f32x8(answers, yes.eight(avx2), no.eight(avx2)))
+                Eight(select(avx2, answers, yes.eight(avx2), no.eight(avx2)))
             }
         }
     }
@@ -242,7 +303,7 @@ impl Real for Numbers {
                     #[inline(always)]
                     |lane| function(f64::from(numbers[lane])) as f32,
                 );
-                Eight(numbers.simd_into(avx2))
+                Eight(SimdFrom::simd_from(avx2, numbers))
             }
         }
     }
@@ -258,7 +319,7 @@ impl Real for Numbers {
             None => result(0).map(Self::of),
             Some(avx2) => {
                 let results = each_lane(result);
-                from_fn(|k| Eight(each_lane(|lane| results[lane][k] as f32).simd_into(avx2)))
+                from_fn(|k| Eight(SimdFrom::simd_from(avx2, each_lane(|lane| results[lane][k] as f32))))
             }
         }
     }
@@ -279,8 +340,8 @@ impl Real for Numbers {
             return One(f32::gather_color(column, row, row_bits, colors).bits());
         };
         let [column, row] = [column.eight(avx2), row.eight(avx2)];
-        let rows = avx2.shl_i32x8(avx2.cvt_i32_f32x8(row), row_bits);
-        let indices = avx2.add_i32x8(rows, avx2.cvt_i32_f32x8(column));
+        let rows = shifted_left(avx2, whole(avx2, row), row_bits);
+        let indices = add_words(avx2, rows, whole(avx2, column));
         // Two by two, as for the baseline.
         let pairs: [u64; LANES / 2] = cast::<[i32; LANES], _>(indices.into());
         let words = each_lane(
@@ -290,7 +351,7 @@ impl Real for Numbers {
                 colors[index as usize].bits().cast_signed()
             },
         );
-        Eight(words.simd_into(avx2))
+        Eight(SimdFrom::simd_from(avx2, words))
     }
 
     #[inline(always)]
@@ -299,7 +360,7 @@ impl Real for Numbers {
             One(word) => f32::channels(Color::from_bits(word)).map(One),
             Eight(words) => {
                 let avx2 = words.simd;
-                [low_byte(avx2.shr_i32x8(words, 16)), low_byte(avx2.shr_i32x8(words, 8)), low_byte(words)]
+                [Eight(byte(avx2, words, 16)), Eight(byte(avx2, words, 8)), Eight(byte(avx2, words, 0))]
             }
         }
     }
@@ -334,14 +395,14 @@ kernel!(
         ];
         // The halves of all eight.
         [
-            Eight(_mm256_permute2f128_ps::<0x20>(low[0], high[0]).simd_into(avx2)),
-            Eight(_mm256_permute2f128_ps::<0x20>(low[1], high[1]).simd_into(avx2)),
-            Eight(_mm256_permute2f128_ps::<0x20>(low[2], high[2]).simd_into(avx2)),
-            Eight(_mm256_permute2f128_ps::<0x20>(low[3], high[3]).simd_into(avx2)),
-            Eight(_mm256_permute2f128_ps::<0x31>(low[0], high[0]).simd_into(avx2)),
-            Eight(_mm256_permute2f128_ps::<0x31>(low[1], high[1]).simd_into(avx2)),
-            Eight(_mm256_permute2f128_ps::<0x31>(low[2], high[2]).simd_into(avx2)),
-            Eight(_mm256_permute2f128_ps::<0x31>(low[3], high[3]).simd_into(avx2)),
+            Eight(SimdFrom::simd_from(avx2, _mm256_permute2f128_ps::<0x20>(low[0], high[0]))),
+            Eight(SimdFrom::simd_from(avx2, _mm256_permute2f128_ps::<0x20>(low[1], high[1]))),
+            Eight(SimdFrom::simd_from(avx2, _mm256_permute2f128_ps::<0x20>(low[2], high[2]))),
+            Eight(SimdFrom::simd_from(avx2, _mm256_permute2f128_ps::<0x20>(low[3], high[3]))),
+            Eight(SimdFrom::simd_from(avx2, _mm256_permute2f128_ps::<0x31>(low[0], high[0]))),
+            Eight(SimdFrom::simd_from(avx2, _mm256_permute2f128_ps::<0x31>(low[1], high[1]))),
+            Eight(SimdFrom::simd_from(avx2, _mm256_permute2f128_ps::<0x31>(low[2], high[2]))),
+            Eight(SimdFrom::simd_from(avx2, _mm256_permute2f128_ps::<0x31>(low[3], high[3]))),
         ]
     }
 );
@@ -358,12 +419,12 @@ impl InstructionSet for Avx2 {
 
     #[inline(always)]
     fn lanes(self, numbers: [f32; LANES]) -> Numbers {
-        Eight(numbers.simd_into(self))
+        Eight(SimdFrom::simd_from(self, numbers))
     }
 
     #[inline(always)]
     fn splat(self, number: f32) -> Numbers {
-        Eight(self.splat_f32x8(number))
+        Eight(splat(self, number))
     }
 
     #[inline(always)]
@@ -377,7 +438,7 @@ impl InstructionSet for Avx2 {
             self,
             each_lane(
                 #[inline(always)]
-                |row| rows[row].0.simd_into(self),
+                |row| SimdFrom::simd_from(self, rows[row].0),
             ),
         )
     }
@@ -390,12 +451,12 @@ impl InstructionSet for Avx2 {
 
     #[inline(always)]
     fn is_less_or_equal(self, a: Numbers, b: Numbers) -> Answers {
-        Eight(self.simd_le_f32x8(a.eight(self), b.eight(self)))
+        Eight(is_less_or_equal(self, a.eight(self), b.eight(self)))
     }
 
     #[inline(always)]
     fn mask(self, bits: i32) -> Answers {
-        Eight(self.from_bitmask_mask32x8(bits as u64))
+        Eight(mask(self, bits))
     }
 
     #[inline(always)]
@@ -408,7 +469,7 @@ impl InstructionSet for Avx2 {
                     0
                 }
             }
-            Eight(answers) => self.to_bitmask_mask32x8(answers) as i32,
+            Eight(answers) => bits_of(self, answers),
         }
     }
 
@@ -425,7 +486,7 @@ impl InstructionSet for Avx2 {
 
     #[inline(always)]
     fn words(self, words: [u32; LANES]) -> Words {
-        Eight(cast::<_, [i32; LANES]>(words).simd_into(self))
+        Eight(SimdFrom::simd_from(self, cast::<_, [i32; LANES]>(words)))
     }
 
     #[inline(always)]
@@ -438,19 +499,19 @@ impl InstructionSet for Avx2 {
         match mask {
             One(true) => yes,
             One(false) => no,
-            Eight(mask) => Eight(self.select_i32x8(mask, yes.eight(self), no.eight(self))),
+            Eight(mask) => Eight(select_words(self, mask, yes.eight(self), no.eight(self))),
         }
     }
 
     #[inline(always)]
     fn lowest_bits(self, bytes: u64) -> ([i32; LANES], Numbers) {
         let numbers = lowest_bits(self, bytes);
-        (numbers.into(), Eight(self.cvt_f32_i32x8(numbers)))
+        (numbers.into(), Eight(numbers_of(self, numbers)))
     }
 
     #[inline(always)]
     fn four(self, numbers: [f64; 4]) -> f64x4<Self> {
-        numbers.simd_into(self)
+        SimdFrom::simd_from(self, numbers)
     }
 
     #[inline(always)]
@@ -459,19 +520,12 @@ impl InstructionSet for Avx2 {
     }
 }
 
-/// The lowest byte of each word, as a number.
-#[inline(always)]
-fn low_byte(words: i32x8<Avx2>) -> Numbers {
-    let avx2 = words.simd;
-    Eight(avx2.cvt_f32_i32x8(avx2.and_i32x8(words, avx2.splat_i32x8(0xFF))))
-}
-
 /// A channel, rounded to the nearest whole number up to 255; far below zero or not a number, the least there is.
 #[inline(always)]
 fn channel(avx2: Avx2, channel: Numbers) -> i32x8<Avx2> {
     // In this order: what is not a number stays so.
     let limited = One(255.0).min(channel + One(0.5));
-    avx2.cvt_i32_f32x8(limited.eight(avx2))
+    whole(avx2, limited.eight(avx2))
 }
 
 kernel!(
@@ -485,7 +539,7 @@ kernel!(
         let bytes = _mm256_packus_epi16(_mm256_packs_epi32(blue, green), _mm256_packs_epi32(red, red));
         let zero = -1;
         let pixels = _mm_setr_epi8(0, 4, 8, zero, 1, 5, 9, zero, 2, 6, 10, zero, 3, 7, 11, zero);
-        _mm256_shuffle_epi8(bytes, _mm256_broadcastsi128_si256(pixels)).simd_into(avx2)
+        SimdFrom::simd_from(avx2, _mm256_shuffle_epi8(bytes, _mm256_broadcastsi128_si256(pixels)))
     }
 );
 
@@ -511,7 +565,7 @@ kernel!(
         // The exponent of a power of two is the number of its bit.
         let lowest = _mm256_and_si256(bytes, _mm256_sub_epi32(_mm256_setzero_si256(), bytes));
         let exponents = _mm256_srli_epi32::<23>(_mm256_castps_si256(_mm256_cvtepi32_ps(lowest)));
-        _mm256_sub_epi32(exponents, _mm256_set1_epi32(127)).simd_into(avx2)
+        SimdFrom::simd_from(avx2, _mm256_sub_epi32(exponents, _mm256_set1_epi32(127)))
     }
 );
 
@@ -572,7 +626,7 @@ impl Four for f64x4<Avx2> {
 kernel!(
     #[inline(always)]
     fn or(avx2: Avx2, a: f64x4<Avx2>, b: f64x4<Avx2>) -> f64x4<Avx2> {
-        _mm256_or_pd(a.into(), b.into()).simd_into(avx2)
+        SimdFrom::simd_from(avx2, _mm256_or_pd(a.into(), b.into()))
     }
 );
 
@@ -580,6 +634,6 @@ kernel!(
     #[inline(always)]
     fn flip_signs(avx2: Avx2, numbers: f64x4<Avx2>, signs: f64x4<Avx2>) -> f64x4<Avx2> {
         let signs = _mm256_and_pd(signs.into(), _mm256_set1_pd(-0.0));
-        _mm256_xor_pd(numbers.into(), signs).simd_into(avx2)
+        SimdFrom::simd_from(avx2, _mm256_xor_pd(numbers.into(), signs))
     }
 );

@@ -28,6 +28,12 @@ pub const LANES: usize = 8;
 /// Eight numbers of single precision.
 pub type Lanes = f32x8;
 
+/// What a function gives for each lane. (`from_fn` and `map` of the standard library need not be inlined.)
+#[inline(always)]
+pub(super) fn each_lane<T>(of: impl Fn(usize) -> T) -> [T; LANES] {
+    [of(0), of(1), of(2), of(3), of(4), of(5), of(6), of(7)]
+}
+
 /// Eight numbers in memory, where all processors can read and write them at once.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]

@@ -8,7 +8,7 @@ use super::bands::{Band, TILE_HEIGHT};
 use super::edges::{SMALL_SIDE, STEPS, SmallTriangleSetup, Spans, TriangleSetup};
 use super::frame::Frame;
 use super::instruction_set::{InstructionSet, MaskOf, WordsOf};
-use super::lanes::{ALL, Block, LANES};
+use super::lanes::{ALL, Block, LANES, each_lane};
 use super::occlusion::{NO_OCCLUDER, coverage_of, depth_range, occluder_depth};
 use super::packed::{PackedTriangleVaryings, linear};
 use super::snapped::{box_of, is_at_most, shared};
@@ -403,7 +403,10 @@ fn draw_group<const PLAIN: bool, I: InstructionSet, S: Shader<N>, const N: usize
     let drawn = seen & instructions.bits(shaded.keep);
 
     // Mostly all eight are written. If not, what is there stays in the other lanes.
-    let there = instructions.words(colors.map(Color::bits));
+    let there = instructions.words(each_lane(
+        #[inline(always)]
+        |lane| colors[lane].bits(),
+    ));
     let blend = if PLAIN { Blend::Opaque } else { state.merge.blend };
     let mut words = match blend {
         Blend::Opaque => opaque(instructions, shaded.color),
@@ -415,7 +418,11 @@ fn draw_group<const PLAIN: bool, I: InstructionSet, S: Shader<N>, const N: usize
         words = instructions.choose(mask, words, there);
         nearest = I::Lanes::select(mask, depth, stored);
     }
-    *colors = instructions.word_array(words).map(Color::from_bits);
+    let words = instructions.word_array(words);
+    *colors = each_lane(
+        #[inline(always)]
+        |lane| Color::from_bits(words[lane]),
+    );
     if PLAIN || state.merge.depth_write {
         *depths = instructions.numbers(nearest);
     }

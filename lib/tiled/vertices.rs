@@ -49,7 +49,7 @@ pub(super) struct Triangle<'a> {
 impl Triangle<'_> {
     /// The positions, as [`edge`](crate::exact::edge) knows them.
     pub(super) fn vertices(&self) -> [Subpixel; 3] {
-        self.positions.map(|position| position.map(i64::from))
+        map3(self.positions, |[x, y]| [i64::from(x), i64::from(y)])
     }
 }
 
