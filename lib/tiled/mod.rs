@@ -252,3 +252,148 @@ impl Rasterizer for Tiled {
         self.draw_source(&Source::Pieces(&pieces), shader, &state, target);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::array::from_fn;
+
+    use glam::{DVec4, dvec4};
+
+    use super::*;
+    use crate::area::Winding;
+    use crate::clip::{ClipTest, ClipVertex, ClipVolume};
+    use crate::color::Color;
+    use crate::cull::CullMode;
+    use crate::depth::{DepthEncoding, DepthTest};
+    use crate::interpolate::Interpolation;
+    use crate::merge::{Blend, Merge};
+    use crate::real::Real;
+    use crate::shader::Shaded;
+    use crate::transform::Viewport;
+    use crate::varyings::Derivatives;
+
+    /// Colors that change from pixel to pixel, with holes and with opacities; by their slopes, or not.
+    struct Patterned<const SLOPED: bool>;
+
+    impl<const SLOPED: bool> Shader<3> for Patterned<SLOPED> {
+        type Attributes = (DVec4, [f64; 3]);
+        const IS_INLINED: bool = true;
+        const USES_DERIVATIVES: bool = SLOPED;
+
+        fn vertex(&self, &(position, varyings): &Self::Attributes) -> ClipVertex<3> {
+            ClipVertex { position, varyings }
+        }
+
+        #[inline(always)]
+        fn fragment<R: Real>(&self, [u, v, w]: [R; 3]) -> Shaded<R> {
+            let stripe = u - u.floor();
+            let color = [stripe * R::of(255.0), v * R::of(99.0), (w - u).max(R::of(0.0)) * R::of(300.0)];
+            Shaded::translucent(color, stripe).discard(stripe.is_less(R::of(0.125)))
+        }
+
+        #[inline(always)]
+        fn fragment_with_derivatives<R: Real>(
+            &self,
+            [u, v, w]: [R; 3],
+            change: Derivatives<R, 3>,
+        ) -> Shaded<R> {
+            self.fragment([u, v + change.dx[0] * R::of(9.0), w - change.dy[1] * R::of(9.0)])
+        }
+    }
+
+    /// Triangles of all sizes, on the screen, over its border and behind the eye; each shares an edge with the next one.
+    fn scene(round: usize) -> Mesh<(DVec4, [f64; 3])> {
+        let number = |i: usize| {
+            let i = (i + 1000 * round) as f64;
+            (i * i * 0.618_033_988_749_9).fract()
+        };
+        let vertex = |i: usize| {
+            let [x, y, z, w, a, b, c] = from_fn(|k| number(7 * i + k));
+            // Every other strip is small.
+            let size = if i / 5 % 2 == 0 { 2.6 } else { 0.3 };
+            let center = number(i / 5) - 0.5;
+            let position = [(x - 0.5) * size + center, (y - 0.5) * size + center, z * 2.2 - 1.1];
+            let w = if i % 11 == 0 { -0.5 } else { w + 0.5 };
+            let [x, y, z] = position.map(|along| along * w);
+            (dvec4(x, y, z, w), [a, b, c].map(|value| 4.0 * value))
+        };
+        let triangles = (0..50).flat_map(|i| [i, i + 1, if i % 5 < 3 { i + 2 } else { i - 2 }]);
+        Mesh::indexed((0..60).map(vertex).collect(), triangles.collect()).expect("whole triangles")
+    }
+
+    fn states() -> Vec<RenderState> {
+        let plain = RenderState { load: LoadOp::Clear, clear_color: Color::BLUE, ..RenderState::default() };
+        let merge = |depth_test, depth_write, blend| Merge { depth_test, depth_write, blend };
+        vec![
+            plain,
+            RenderState { load: LoadOp::Load, ..plain },
+            RenderState { cull: CullMode::Back, clip_test: ClipTest::AfterDivide, ..plain },
+            RenderState {
+                cull: CullMode::Front,
+                front_face: Winding::Clockwise,
+                interpolation: Interpolation::Affine,
+                ..plain
+            },
+            RenderState {
+                merge: merge(DepthTest::Less, false, Blend::SourceOver),
+                interpolation: Interpolation::Reciprocal,
+                ..plain
+            },
+            RenderState {
+                merge: merge(DepthTest::Greater, true, Blend::Additive),
+                depth_encoding: DepthEncoding::Reciprocal,
+                clear_depth: -9.0,
+                ..plain
+            },
+            RenderState {
+                merge: merge(DepthTest::Always, true, Blend::Opaque),
+                depth_encoding: DepthEncoding::ViewZ,
+                clip_volume: ClipVolume::InFront(0.1),
+                viewport: Some(Viewport { x: 30.0, y: 5.5, width: 90.0, height: 60.0 }),
+                ..plain
+            },
+        ]
+    }
+
+    fn assert_same(target: &Target<f32>, exact: &Target<f32>, what: &str) {
+        for (x, y) in exact.color.rect().pixels() {
+            assert_eq!(target.color.get(x, y), exact.color.get(x, y), "{what}: color at ({x}, {y})");
+            let [this, that] = [target, exact].map(|it| it.depth.get(x, y).map(f32::to_bits));
+            assert_eq!(this, that, "{what}: depth at ({x}, {y})");
+        }
+    }
+
+    /// Two pictures one after the other, the second one on what the first has left, by all instructions of this processor.
+    fn compare<const SLOPED: bool>(state: &RenderState, round: usize) {
+        // Two columns and three rows of tiles, which are not whole.
+        let below = Target::<f32>::sized(131, 70);
+        let (mesh, shader) = (scene(round), Patterned::<SLOPED>);
+        let mut exact = below.clone();
+        exact.clear(Color::GREEN, 1.0);
+        let cleared = exact.clone();
+        draw(&mesh, &shader, state, &Exact::<f32>::new(), &mut exact, &Silent);
+        let drawn =
+            exact.color.rect().pixels().filter(|&(x, y)| exact.color.get(x, y) != cleared.color.get(x, y));
+        assert!(drawn.count() > 2000, "there is something to compare");
+        for instructions in Instructions::available() {
+            let tiled = Tiled::new().with_instructions(instructions);
+            assert_eq!(tiled.instructions().to_string(), instructions.to_string());
+            for what in ["a first picture", "a second one"] {
+                let mut target = cleared.clone();
+                tiled.draw_mesh(&mesh, &shader, state, &mut target);
+                assert_same(&target, &exact, what);
+            }
+            let mut target = cleared.clone();
+            draw(&mesh, &shader, state, &tiled, &mut target, &Silent);
+            assert_same(&target, &exact, "triangles that others have clipped");
+        }
+    }
+
+    #[test]
+    fn tiled_draws_what_the_exact_rasterizer_draws() {
+        for (round, state) in states().iter().enumerate() {
+            compare::<false>(state, round);
+            compare::<true>(state, round + 10);
+        }
+    }
+}
