@@ -396,4 +396,35 @@ mod tests {
             compare::<true>(state, round + 10);
         }
     }
+
+    /// What is blank is not cleared again.
+    #[test]
+    fn pictures_follow_one_another_on_one_target() {
+        let state = RenderState { load: LoadOp::Clear, clear_color: Color::BLUE, ..RenderState::default() };
+        // Four columns and four rows of tiles, some beside and some above the ones before.
+        let triangle = |[x, y]: [f64; 2]| {
+            let vertices = [(-0.1, -0.1), (0.1, -0.1), (0.0, 0.2)];
+            vertices.map(|(dx, dy)| (dvec4(x + dx, y + dy, 0.5, 1.0), [0.3, 1.0, 2.0]))
+        };
+        let pictures: [&[[f64; 2]]; 6] = [
+            &[[-0.8, -0.8], [0.8, 0.6]],
+            &[[0.8, -0.8]],
+            &[[-0.8, 0.1], [-0.2, -0.4], [0.3, 0.6]],
+            &[],
+            &[[0.8, 0.1], [0.8, 0.6]],
+            &[[-0.2, -0.8]],
+        ];
+        for instructions in Instructions::available() {
+            let tiled = Tiled::new().with_instructions(instructions);
+            let mut target = Target::<f32>::sized(400, 100);
+            for places in pictures {
+                let vertices = places.iter().copied().flat_map(triangle).collect();
+                let mesh = Mesh::unindexed(vertices).expect("whole triangles");
+                let mut exact = Target::<f32>::sized(400, 100);
+                draw(&mesh, &Patterned::<false>, &state, &Exact::<f32>::new(), &mut exact, &Silent);
+                tiled.draw_mesh(&mesh, &Patterned::<false>, &state, &mut target);
+                assert_same(&target, &exact, "one after the other");
+            }
+        }
+    }
 }
