@@ -102,6 +102,17 @@ mod tests {
     use crate::tiled::Tiled;
 
     #[test]
+    #[cfg(all(target_arch = "x86_64", not(target_feature = "avx2")))]
+    fn avx2_is_found() {
+        // The crate wants more than that, which all processors with AVX2 have but for a few emulated ones.
+        let has_avx2 = is_x86_feature_detected!("avx2") && is_x86_feature_detected!("bmi2");
+        let is_complete = is_x86_feature_detected!("fma") && is_x86_feature_detected!("movbe");
+        if has_avx2 && is_complete {
+            assert_eq!(Instructions::available().count(), 2);
+        }
+    }
+
+    #[test]
     fn each_has_a_name_and_the_best_is_taken() {
         let names: Vec<String> = Instructions::available().map(|it| it.to_string()).collect();
         assert_eq!(names[0], Instructions::baseline().to_string());

@@ -273,6 +273,8 @@ mod tests {
                 assert_eq!(instructions.numbers(lanes).map(bits), expected);
             };
             check_same(same - b, |a, b| a - b);
+            check_same(I::Lanes::of(0.25) - same, |a, _| 0.25 - a);
+            check_same(-(same - I::Lanes::of(0.25)), |a, _| -(a - 0.25));
             check_same(b - same, |a, b| b - a);
             check_same(same / b, |a, b| a / b);
             check_same(Real::min(same, b), Real::min);
@@ -301,6 +303,7 @@ mod tests {
         assert_eq!(instructions.bits(mask(0b1_1100)), 0b1_1100);
         let yes = instructions.words([1, 2, 0, 3, u32::MAX, 1 << 31, 7, 9]);
         let no = instructions.words([5; 8]);
+        assert!(yes == instructions.words(instructions.word_array(yes)) && yes != no);
         let chosen = |mask| instructions.word_array(instructions.choose(mask, yes, no));
         assert_eq!(chosen(mask(0b110)), [5, 2, 0, 5, 5, 5, 5, 5]);
         assert_eq!(chosen(Mask::all(true)), instructions.word_array(yes));

@@ -397,6 +397,23 @@ mod tests {
         }
     }
 
+    #[test]
+    fn a_rasterizer_by_itself_does_not_clear() {
+        let state = RenderState { load: LoadOp::Clear, ..RenderState::default() };
+        let mut target = Target::<f32>::sized(131, 70);
+        target.clear(Color::GREEN, 0.5);
+        let mut exact = target.clone();
+        let triangles = || {
+            let vertices = [[-0.5, -0.5], [0.5, -0.5], [0.0, 0.5]]
+                .map(|[x, y]| ClipVertex { position: dvec4(x, y, 0.0, 1.0), varyings: [0.3, 1.0, 2.0] });
+            std::iter::once(vertices.map(NdcVertex::from))
+        };
+        Tiled::new().draw(triangles(), &state, &Patterned::<false>, &mut target, &Silent);
+        Exact::<f32>::new().draw(triangles(), &state, &Patterned::<false>, &mut exact, &Silent);
+        assert_eq!(target.color.get(0, 0), Some(Color::GREEN));
+        assert_same(&target, &exact, "one triangle");
+    }
+
     /// What is blank is not cleared again.
     #[test]
     fn pictures_follow_one_another_on_one_target() {
