@@ -310,10 +310,10 @@ mod tests {
         let vertex = |i: usize| {
             let [x, y, z, w, a, b, c] = from_fn(|k| number(7 * i + k));
             // Every other strip is small.
-            let size = if i / 5 % 2 == 0 { 2.6 } else { 0.3 };
+            let size = [2.6, 0.3][i / 5 % 2];
             let center = number(i / 5) - 0.5;
             let position = [(x - 0.5) * size + center, (y - 0.5) * size + center, z * 2.2 - 1.1];
-            let w = if i % 11 == 0 { -0.5 } else { w + 0.5 };
+            let w = if i.is_multiple_of(11) { -0.5 } else { w + 0.5 };
             let [x, y, z] = position.map(|along| along * w);
             (dvec4(x, y, z, w), [a, b, c].map(|value| 4.0 * value))
         };
