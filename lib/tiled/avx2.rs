@@ -47,70 +47,6 @@ type Answers = OneOrEight<bool, mask32x8<Avx2>>;
 /// 0x00RRGGBB.
 type Words = OneOrEight<u32, i32x8<Avx2>>;
 
-/// Functions of eight values, each of one instruction or a few.
-///
-/// The crate has most of them as methods. But these call a function, `simd_into`, that need not be inlined, and without
-/// link-time optimisation, as in the dev profile, it is not: `tiled` took twice as long.
-macro_rules! instructions {
-    ($($(#[$attribute:meta])* fn $name:ident($($argument:ident: $type:ty),*) -> $result:ty = $vector:expr;)*) => {$(
-        kernel!(
-            $(#[$attribute])*
-            #[inline(always)]
-            fn $name(avx2: Avx2, $($argument: $type),*) -> $result {
-                SimdFrom::simd_from(avx2, $vector)
-            }
-        );
-    )*};
-}
-
-instructions! {
-    fn splat(number: f32) -> f32x8<Avx2> = _mm256_set1_ps(number);
-    fn add(a: f32x8<Avx2>, b: f32x8<Avx2>) -> f32x8<Avx2> = _mm256_add_ps(a.into(), b.into());
-    fn sub(a: f32x8<Avx2>, b: f32x8<Avx2>) -> f32x8<Avx2> = _mm256_sub_ps(a.into(), b.into());
-    fn mul(a: f32x8<Avx2>, b: f32x8<Avx2>) -> f32x8<Avx2> = _mm256_mul_ps(a.into(), b.into());
-    fn div(a: f32x8<Avx2>, b: f32x8<Avx2>) -> f32x8<Avx2> = _mm256_div_ps(a.into(), b.into());
-    fn neg(a: f32x8<Avx2>) -> f32x8<Avx2> = _mm256_xor_ps(a.into(), _mm256_set1_ps(-0.0));
-    fn min(a: f32x8<Avx2>, b: f32x8<Avx2>) -> f32x8<Avx2> = _mm256_min_ps(a.into(), b.into());
-    fn max(a: f32x8<Avx2>, b: f32x8<Avx2>) -> f32x8<Avx2> = _mm256_max_ps(a.into(), b.into());
-    fn floor(a: f32x8<Avx2>) -> f32x8<Avx2> = _mm256_floor_ps(a.into());
-    fn sqrt(a: f32x8<Avx2>) -> f32x8<Avx2> = _mm256_sqrt_ps(a.into());
-    fn whole(a: f32x8<Avx2>) -> i32x8<Avx2> = _mm256_cvttps_epi32(a.into());
-
-    fn is_less(a: f32x8<Avx2>, b: f32x8<Avx2>) -> mask32x8<Avx2>
-        = _mm256_castps_si256(_mm256_cmp_ps::<_CMP_LT_OQ>(a.into(), b.into()));
-    fn is_less_or_equal(a: f32x8<Avx2>, b: f32x8<Avx2>) -> mask32x8<Avx2>
-        = _mm256_castps_si256(_mm256_cmp_ps::<_CMP_LE_OQ>(a.into(), b.into()));
-    fn and(a: mask32x8<Avx2>, b: mask32x8<Avx2>) -> mask32x8<Avx2> = _mm256_and_si256(a.into(), b.into());
-    fn not(a: mask32x8<Avx2>) -> mask32x8<Avx2> = _mm256_xor_si256(a.into(), _mm256_set1_epi32(-1));
-    fn mask(bits: i32) -> mask32x8<Avx2> = {
-        let bit_of_lane = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
-        _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(bits), bit_of_lane), bit_of_lane)
-    };
-    fn select(mask: mask32x8<Avx2>, yes: f32x8<Avx2>, no: f32x8<Avx2>) -> f32x8<Avx2>
-        = _mm256_blendv_ps(no.into(), yes.into(), _mm256_castsi256_ps(mask.into()));
-    fn select_words(mask: mask32x8<Avx2>, yes: i32x8<Avx2>, no: i32x8<Avx2>) -> i32x8<Avx2>
-        = _mm256_blendv_epi8(no.into(), yes.into(), mask.into());
-
-    fn splat_word(word: u32) -> i32x8<Avx2> = _mm256_set1_epi32(word.cast_signed());
-    fn numbers_of(words: i32x8<Avx2>) -> f32x8<Avx2> = _mm256_cvtepi32_ps(words.into());
-    fn shifted_left(words: i32x8<Avx2>, by: u32) -> i32x8<Avx2>
-        = _mm256_sll_epi32(words.into(), _mm_cvtsi32_si128(by.cast_signed()));
-    /// The byte from this bit on.
-    fn byte(words: i32x8<Avx2>, bit: u32) -> f32x8<Avx2>
-        = _mm256_cvtepi32_ps(_mm256_and_si256(
-            _mm256_srl_epi32(words.into(), _mm_cvtsi32_si128(bit.cast_signed())),
-            _mm256_set1_epi32(0xFF),
-        ));
-    fn add_words(a: i32x8<Avx2>, b: i32x8<Avx2>) -> i32x8<Avx2> = _mm256_add_epi32(a.into(), b.into());
-}
-
-kernel!(
-    #[inline(always)]
-    fn bits_of(_avx2: Avx2, mask: mask32x8<Avx2>) -> i32 {
-        _mm256_movemask_ps(_mm256_castsi256_ps(mask.into()))
-    }
-);
-
 /// Does something with one number and another one, or with eight and eight.
 macro_rules! with_both {
     ($a:expr, $b:expr, $one:expr, $eight:ident) => {
@@ -125,22 +61,22 @@ macro_rules! with_both {
 
 /// An operator of two numbers.
 macro_rules! operator {
-    ($trait:ident, $method:ident, $eight:ident) => {
+    ($trait:ident, $method:ident) => {
         impl $trait for Numbers {
             type Output = Self;
 
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
-                with_both!(self, other, $trait::$method, $eight)
+                with_both!(self, other, $trait::$method, $method)
             }
         }
     };
 }
 
-operator!(Add, add, add);
-operator!(Sub, sub, sub);
-operator!(Mul, mul, mul);
-operator!(Div, div, div);
+operator!(Add, add);
+operator!(Sub, sub);
+operator!(Mul, mul);
+operator!(Div, div);
 // ANCHOR_END: one_or_eight
 
 impl Neg for Numbers {
@@ -365,6 +301,70 @@ impl Real for Numbers {
         }
     }
 }
+
+/// Functions of eight values, each of one instruction or a few.
+///
+/// The crate has most of them as methods. But these call a function, `simd_into`, that need not be inlined, and without
+/// link-time optimisation, as in the dev profile, it is not: `tiled` took twice as long.
+macro_rules! instructions {
+    ($($(#[$attribute:meta])* fn $name:ident($($argument:ident: $type:ty),*) -> $result:ty = $vector:expr;)*) => {$(
+        kernel!(
+            $(#[$attribute])*
+            #[inline(always)]
+            fn $name(avx2: Avx2, $($argument: $type),*) -> $result {
+                SimdFrom::simd_from(avx2, $vector)
+            }
+        );
+    )*};
+}
+
+instructions! {
+    fn splat(number: f32) -> f32x8<Avx2> = _mm256_set1_ps(number);
+    fn add(a: f32x8<Avx2>, b: f32x8<Avx2>) -> f32x8<Avx2> = _mm256_add_ps(a.into(), b.into());
+    fn sub(a: f32x8<Avx2>, b: f32x8<Avx2>) -> f32x8<Avx2> = _mm256_sub_ps(a.into(), b.into());
+    fn mul(a: f32x8<Avx2>, b: f32x8<Avx2>) -> f32x8<Avx2> = _mm256_mul_ps(a.into(), b.into());
+    fn div(a: f32x8<Avx2>, b: f32x8<Avx2>) -> f32x8<Avx2> = _mm256_div_ps(a.into(), b.into());
+    fn neg(a: f32x8<Avx2>) -> f32x8<Avx2> = _mm256_xor_ps(a.into(), _mm256_set1_ps(-0.0));
+    fn min(a: f32x8<Avx2>, b: f32x8<Avx2>) -> f32x8<Avx2> = _mm256_min_ps(a.into(), b.into());
+    fn max(a: f32x8<Avx2>, b: f32x8<Avx2>) -> f32x8<Avx2> = _mm256_max_ps(a.into(), b.into());
+    fn floor(a: f32x8<Avx2>) -> f32x8<Avx2> = _mm256_floor_ps(a.into());
+    fn sqrt(a: f32x8<Avx2>) -> f32x8<Avx2> = _mm256_sqrt_ps(a.into());
+    fn whole(a: f32x8<Avx2>) -> i32x8<Avx2> = _mm256_cvttps_epi32(a.into());
+
+    fn is_less(a: f32x8<Avx2>, b: f32x8<Avx2>) -> mask32x8<Avx2>
+        = _mm256_castps_si256(_mm256_cmp_ps::<_CMP_LT_OQ>(a.into(), b.into()));
+    fn is_less_or_equal(a: f32x8<Avx2>, b: f32x8<Avx2>) -> mask32x8<Avx2>
+        = _mm256_castps_si256(_mm256_cmp_ps::<_CMP_LE_OQ>(a.into(), b.into()));
+    fn and(a: mask32x8<Avx2>, b: mask32x8<Avx2>) -> mask32x8<Avx2> = _mm256_and_si256(a.into(), b.into());
+    fn not(a: mask32x8<Avx2>) -> mask32x8<Avx2> = _mm256_xor_si256(a.into(), _mm256_set1_epi32(-1));
+    fn mask(bits: i32) -> mask32x8<Avx2> = {
+        let bit_of_lane = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+        _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(bits), bit_of_lane), bit_of_lane)
+    };
+    fn select(mask: mask32x8<Avx2>, yes: f32x8<Avx2>, no: f32x8<Avx2>) -> f32x8<Avx2>
+        = _mm256_blendv_ps(no.into(), yes.into(), _mm256_castsi256_ps(mask.into()));
+    fn select_words(mask: mask32x8<Avx2>, yes: i32x8<Avx2>, no: i32x8<Avx2>) -> i32x8<Avx2>
+        = _mm256_blendv_epi8(no.into(), yes.into(), mask.into());
+
+    fn splat_word(word: u32) -> i32x8<Avx2> = _mm256_set1_epi32(word.cast_signed());
+    fn numbers_of(words: i32x8<Avx2>) -> f32x8<Avx2> = _mm256_cvtepi32_ps(words.into());
+    fn shifted_left(words: i32x8<Avx2>, by: u32) -> i32x8<Avx2>
+        = _mm256_sll_epi32(words.into(), _mm_cvtsi32_si128(by.cast_signed()));
+    /// The byte from this bit on.
+    fn byte(words: i32x8<Avx2>, bit: u32) -> f32x8<Avx2>
+        = _mm256_cvtepi32_ps(_mm256_and_si256(
+            _mm256_srl_epi32(words.into(), _mm_cvtsi32_si128(bit.cast_signed())),
+            _mm256_set1_epi32(0xFF),
+        ));
+    fn add_words(a: i32x8<Avx2>, b: i32x8<Avx2>) -> i32x8<Avx2> = _mm256_add_epi32(a.into(), b.into());
+}
+
+kernel!(
+    #[inline(always)]
+    fn bits_of(_avx2: Avx2, mask: mask32x8<Avx2>) -> i32 {
+        _mm256_movemask_ps(_mm256_castsi256_ps(mask.into()))
+    }
+);
 
 kernel!(
     /// As [`wide::f32x8::transpose`] does it: pairs, fours, halves.
