@@ -417,24 +417,32 @@ mod tests {
     /// What is blank is not cleared again.
     #[test]
     fn pictures_follow_one_another_on_one_target() {
-        let state = RenderState { load: LoadOp::Clear, clear_color: Color::BLUE, ..RenderState::default() };
+        let state = |clear_color, clear_depth| RenderState {
+            load: LoadOp::Clear,
+            clear_color,
+            clear_depth,
+            ..RenderState::default()
+        };
+        let (blue, green, deep) =
+            (state(Color::BLUE, 1.0), state(Color::GREEN, 1.0), state(Color::GREEN, 2.0));
         // Four columns and four rows of tiles, some beside and some above the ones before.
         let triangle = |[x, y]: [f64; 2]| {
             let vertices = [(-0.1, -0.1), (0.1, -0.1), (0.0, 0.2)];
             vertices.map(|(dx, dy)| (dvec4(x + dx, y + dy, 0.5, 1.0), [0.3, 1.0, 2.0]))
         };
-        let pictures: [&[[f64; 2]]; 6] = [
-            &[[-0.8, -0.8], [0.8, 0.6]],
-            &[[0.8, -0.8]],
-            &[[-0.8, 0.1], [-0.2, -0.4], [0.3, 0.6]],
-            &[],
-            &[[0.8, 0.1], [0.8, 0.6]],
-            &[[-0.2, -0.8]],
+        let pictures: [(RenderState, &[[f64; 2]]); 7] = [
+            (blue, &[[-0.8, -0.8], [0.8, 0.6]]),
+            (blue, &[[0.8, -0.8]]),
+            (blue, &[[-0.8, 0.1], [-0.2, -0.4], [0.3, 0.6]]),
+            (green, &[]),
+            (green, &[[0.8, 0.1], [0.8, 0.6]]),
+            (deep, &[[-0.2, -0.8]]),
+            (deep, &[]),
         ];
         for instructions in Instructions::available() {
             let tiled = Tiled::new().with_instructions(instructions);
             let mut target = Target::<f32>::sized(400, 100);
-            for places in pictures {
+            for (state, places) in pictures {
                 let vertices = places.iter().copied().flat_map(triangle).collect();
                 let mesh = Mesh::unindexed(vertices).expect("whole triangles");
                 let mut exact = Target::<f32>::sized(400, 100);
