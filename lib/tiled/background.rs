@@ -144,3 +144,45 @@ fn fill<T: Copy>(plane: &mut [T], value: T) {
     first.fill(value);
     rest.chunks_mut(BLOCK).for_each(|block| block.copy_from_slice(&first[..block.len()]));
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whether each of five tiles holds this background.
+    fn blank_tiles(blank: &Blank, background: u32) -> [bool; 5] {
+        std::array::from_fn(|tile| blank.holds(tile, background))
+    }
+
+    #[test]
+    fn a_tile_is_blank_until_something_is_drawn_in_it() {
+        let mut blank = Blank::default();
+        assert_eq!(blank_tiles(&blank, 0), [false; 5], "nothing is known yet");
+        blank.cleared(7, 4, |tile| tile != 2);
+        assert_eq!(blank_tiles(&blank, 7), [true, true, false, true, false]);
+        assert_eq!(blank_tiles(&blank, 8), [false; 5], "another background");
+        blank.drawn(|tile| tile == 1 || tile == 2);
+        assert_eq!(blank_tiles(&blank, 7), [false, true, false, false, false]);
+    }
+
+    #[test]
+    fn what_is_blank_is_left_with_the_planes() {
+        let picture = Rect::sized(300, 20);
+        let plane_of = |size| PixelPlane::from(vec![Color::BLACK; size]);
+        let (mut colors, mut depths) = (plane_of(6000), PixelPlane::from(vec![1.0_f32; 6000]));
+        let state = RenderState { load: LoadOp::Clear, ..RenderState::default() };
+        let background = Background::take(&state, picture, &mut colors, &mut depths);
+        let [color, depth] = background.bits();
+        assert_eq!([color, depth], [state.clear_color.bits(), (state.clear_depth as f32).to_bits()]);
+        background.put_back(&mut colors, &mut depths, 3, &|tile| tile == 1);
+        let again = Background::take(&state, picture, &mut colors, &mut depths);
+        let expected = [false, true, false, false, false];
+        assert_eq!([&again.blank[0], &again.blank[1]].map(|it| it.background), [color, depth]);
+        assert_eq!(blank_tiles(&again.blank[0], color), expected);
+        assert_eq!(blank_tiles(&again.blank[1], depth), expected);
+        // The same pixels in another shape: other tiles.
+        again.put_back(&mut colors, &mut depths, 3, &|_| true);
+        let other = Background::take(&state, Rect::sized(20, 300), &mut colors, &mut depths);
+        assert_eq!(blank_tiles(&other.blank[0], color), [false; 5]);
+    }
+}

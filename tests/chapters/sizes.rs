@@ -5,7 +5,7 @@ use crate::chapters::{smaller, variant, variants};
 use rasterbook::figure::picture::paste;
 use rasterbook::figure::{DrawOptions, Variant};
 use rasterbook::inspect::{history, overdraw};
-use rasterbook::{Color, Framebuffer, Pixel};
+use rasterbook::{Color, Framebuffer, Pixel, Rect};
 use rayon::prelude::*;
 
 /// From a certain size on there is a grid between enlarged pixels.
@@ -32,22 +32,22 @@ fn missing(this: &Framebuffer, that: &Framebuffer, factor: f64) -> (usize, usize
     let background = this.get(0, 0);
     let reach = factor.ceil() as i32;
     let (mut missing, mut count) = (0, 0);
-    let columns = this.rect().columns();
-    for (x, y) in this.rect().rows().step_by(3).flat_map(|y| columns.clone().step_by(3).map(move |x| (x, y)))
-    {
+    let (columns, rows) = (this.rect().columns(), this.rect().rows());
+    for (x, y) in rows.step_by(3).flat_map(|y| columns.clone().step_by(3).map(move |x| (x, y))) {
         let Some(color) = this.get(x, y).filter(|color| Some(*color) != background && *color != GRID) else {
             continue;
         };
         let [left, bottom] = [x, y].map(|along| (f64::from(along) * factor) as i32);
-        let near = (bottom - reach..=bottom + 2 * reach)
-            .flat_map(|y| (left - reach..=left + 2 * reach).map(move |x| (x, y)));
+        let shows = |(x, y): Pixel| that.get(x, y).is_some_and(|it| is_like(it, color));
+        let near = Rect {
+            left: left - reach,
+            bottom: bottom - reach,
+            right: left + 2 * reach + 1,
+            top: bottom + 2 * reach + 1,
+        };
         count += 1;
         // Nearly always it is at the place itself.
-        missing += usize::from(
-            !std::iter::once((left, bottom))
-                .chain(near)
-                .any(|(x, y)| that.get(x, y).is_some_and(|it| is_like(it, color))),
-        );
+        missing += usize::from(!shows((left, bottom)) && !near.pixels().any(shows));
     }
     (missing, count)
 }
