@@ -375,6 +375,7 @@ impl Variant {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::color::Color;
 
     #[test]
     fn only_a_picture_of_a_model_has_a_subject() {
@@ -385,5 +386,84 @@ mod tests {
         let missing = Variant::of_model_in_plane("missing", |_, _| {}, ["teapot.obj", "wood.png"], "-");
         assert!(missing.subject().is_err());
         assert!(Variant::new("plain", |_| {}, "-").subject().expect("no file").is_none());
+    }
+
+    const RED: fn(&mut Framebuffer) = |picture| picture.clear(Color::RED);
+    const GREEN: fn(&mut Canvas) = |canvas| canvas.picture_mut().clear(Color::GREEN);
+    const KNOBS: &[Knob] = &[Knob::number("gray", 9.0, [0.0, 255.0], "", "brighter")];
+
+    #[test]
+    fn a_variant_is_what_its_table_says() {
+        let plain = Variant::new("plain", RED, "red");
+        assert_eq!((plain.name, plain.look, plain.source, plain.size), ("plain", "red", "", (640, 480)));
+        assert_eq!((plain.mistake, plain.animation, plain.rasterizer), (Mistake::No, None, None));
+        assert!(plain.knobs.is_empty() && !plain.in_pixels && !plain.fits_model);
+
+        let plain = plain.size(3, 2).in_pixels().source("section 1").remedied_by("other");
+        assert_eq!((plain.size, plain.in_pixels, plain.source), ((3, 2), true, "section 1"));
+        assert_eq!(plain.mistake, Mistake::RemediedBy("other"));
+        assert_eq!(plain.without_remedy().mistake, Mistake::WithoutRemedy);
+
+        let canvas = || Variant::with_pipeline("canvas", GREEN, "-");
+        assert_eq!(canvas().rasterizer, Some(RasterizerChoice::Scanline));
+        assert_eq!(canvas().exact().rasterizer, Some(RasterizerChoice::Exact));
+        assert_eq!(canvas().tiled().rasterizer, Some(RasterizerChoice::FASTEST));
+        assert_eq!(canvas().animated(Animation::SWEEP).animation, Some(Animation::SWEEP));
+        assert_eq!(canvas().knobs(KNOBS).knobs.len(), 1);
+        assert!(canvas().fits_model().fits_model);
+    }
+
+    #[test]
+    fn models_and_textures_mean_something_to_some() {
+        let of_model = Variant::of_model("model", |_, _| {}, ["cube.obj", "wood.png"], "-");
+        let in_plane = Variant::of_model_in_plane("plane", |_, _| {}, ["cube.obj", "wood.png"], "-");
+        let plain = Variant::new("plain", RED, "-");
+        let both = |variant: &Variant| (variant.has_model(), variant.has_texture());
+        assert_eq!([&of_model, &in_plane, &plain].map(both), [(true, true), (true, false), (false, false)]);
+    }
+
+    #[test]
+    fn each_kind_of_figure_is_drawn_and_observed() {
+        #[derive(Debug, Default)]
+        struct Cleared(std::sync::atomic::AtomicUsize);
+        impl crate::observer::Observer for Cleared {
+            fn cleared(&self, _color: Color) {
+                self.0.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+            }
+        }
+        impl crate::probe::Probe for Cleared {}
+
+        let gray =
+            |picture: &mut Framebuffer, knobs: &Knobs| picture.clear(Color::gray(knobs.number("gray") as u8));
+        let of_model = |canvas: &mut Canvas, _: &Subject| canvas.picture_mut().clear(Color::BLUE);
+        let in_plane = |picture: &mut Framebuffer, _: &Subject| picture.clear(Color::WHITE);
+        let assets = ["cube.obj", "wood.png"];
+        let variants = [
+            (Variant::new("plain", RED, "-"), Color::RED),
+            (Variant::with_knobs("turned", gray, KNOBS, "-"), Color::gray(9)),
+            (Variant::with_pipeline("canvas", GREEN, "-"), Color::GREEN),
+            (Variant::of_model("model", of_model, assets, "-"), Color::BLUE),
+            (Variant::of_model_in_plane("plane", in_plane, assets, "-"), Color::WHITE),
+        ];
+        for (variant, color) in variants {
+            let (variant, observer) = (variant.size(4, 3), std::sync::Arc::new(Cleared::default()));
+            let subject = variant.subject().expect("in assets/");
+            let options = variant.options(subject.as_ref());
+            assert_eq!((options.size, options.frame, options.knobs.changed().is_empty()), ((4, 3), 0, true));
+            let picture = variant.draw(&DrawOptions { observer: Some(observer.clone()), ..options });
+            assert_eq!((picture.width(), picture.height(), picture.get(3, 2)), (4, 3, Some(color)));
+            assert_eq!(observer.0.load(std::sync::atomic::Ordering::Relaxed), 1, "{}", variant.name);
+            let expected = if variant.has_model() { Color::BLACK } else { color };
+            assert_eq!(variant.draw(&variant.options(None)).get(3, 2), Some(expected), "without its subject");
+        }
+    }
+
+    #[test]
+    fn a_chapter_finds_its_variants() {
+        static VARIANTS: [Variant; 2] = [Variant::new("first", RED, "-"), Variant::new("second", RED, "-")];
+        let chapter = Chapter { name: "ch00", question: "?", variants: &VARIANTS };
+        assert_eq!(chapter.lead().name, "first");
+        assert_eq!(chapter.find("second").map(|variant| variant.name), Some("second"));
+        assert!(chapter.find("third").is_none());
     }
 }
