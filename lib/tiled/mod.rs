@@ -398,6 +398,28 @@ mod tests {
     }
 
     #[test]
+    fn tiles_without_triangles_are_known() {
+        // Four columns and four rows of tiles.
+        let tiled = Tiled::new();
+        let mut target = Target::<f32>::sized(400, 100);
+        let mut empty_tiles = |half_side: f64| {
+            let vertices = [(-1.0, -1.0), (3.0, -1.0), (-1.0, 3.0)].map(|(x, y)| {
+                let [x, y] = [x, y].map(|way| way * half_side - 0.8);
+                (dvec4(x, y, 0.0, 1.0), [0.5; 3])
+            });
+            let mesh = Mesh::unindexed(vertices.to_vec()).expect("a triangle");
+            tiled.draw_mesh(&mesh, &Patterned::<false>, &RenderState::default(), &mut target);
+            let front = tiled.front.lock().expect("not poisoned");
+            let empty: Vec<bool> = (0..16).map(|tile| front.is_empty(tile)).collect();
+            (empty, front.has_large_triangles())
+        };
+        let mut all_but_one = vec![true; 16];
+        all_but_one[0] = false;
+        assert_eq!(empty_tiles(0.1), (all_but_one, false));
+        assert_eq!(empty_tiles(9.0), (vec![false; 16], true));
+    }
+
+    #[test]
     fn a_rasterizer_by_itself_does_not_clear() {
         let state = RenderState { load: LoadOp::Clear, ..RenderState::default() };
         let mut target = Target::<f32>::sized(131, 70);

@@ -133,7 +133,8 @@ impl Vertices {
 impl Vertices {
     /// Hands the vertices out in parts, to all threads; `shade` gets the number of the first in each.
     fn each_part(&mut self, blocks: usize, shade: &(dyn Fn(usize, Slots<'_>) + Sync)) {
-        const PART: usize = 256 * AT_A_TIME;
+        // Of whole groups that are shaded at a time.
+        const PART: usize = 1024;
         let positions = self.positions.par_chunks_mut(PART);
         let parts = positions.zip(self.outside.par_chunks_mut(PART));
         let parts = parts.zip(self.packed.par_chunks_mut(PART * blocks)).enumerate();
@@ -353,7 +354,7 @@ mod tests {
     use crate::exact::is_in_guard_band;
     use crate::shader::from_fn;
     use crate::tiled::instructions::with_each;
-    use glam::dvec4;
+    use glam::{dvec3, dvec4};
     use proptest::prelude::*;
 
     /// Positions in clip space, in the view or not, and some that are none.
@@ -429,6 +430,21 @@ mod tests {
                 let outside = outside.fold(0, |bits, (bit, plane)| bits | u8::from(is_outside(plane)) << bit);
                 assert_eq!(vertices.outside([0, i, i]), [0, outside, outside], "{i} of {count}");
             }
+        }
+    }
+
+    #[test]
+    fn nothing_is_left_of_a_picture_before() {
+        let state = RenderState::default();
+        let projection = Projection::new(&state, Rect::sized(640, 480));
+        let vertex = |x| NdcVertex { position: dvec3(x, 0.0, 0.5), w: 1.0, varyings: [x; 3] };
+        let mut vertices = Vertices::default();
+        for _ in 0..2 {
+            assert!(vertices.push(&[0.0, 0.5, 0.25].map(vertex), &projection).is_some());
+            assert!(vertices.push(&[0.0, 1e9, 0.25].map(vertex), &projection).is_none(), "too far away");
+            assert_eq!(vertices.triangle_count(), 1);
+            vertices.clear();
+            assert_eq!((vertices.triangle_count(), vertices.packed.len(), vertices.outside.len()), (0, 0, 0));
         }
     }
 
