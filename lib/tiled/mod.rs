@@ -259,6 +259,7 @@ mod tests {
 
     use glam::{DVec4, dvec4};
 
+    use super::bands::{TILE_HEIGHT, TILE_WIDTH};
     use super::*;
     use crate::area::Winding;
     use crate::clip::{ClipTest, ClipVertex, ClipVolume};
@@ -318,7 +319,10 @@ mod tests {
             (dvec4(x, y, z, w), [a, b, c].map(|value| 4.0 * value))
         };
         let triangles = (0..50).flat_map(|i| [i, i + 1, if i % 5 < 3 { i + 2 } else { i - 2 }]);
-        Mesh::indexed((0..60).map(vertex).collect(), triangles.collect()).expect("whole triangles")
+        // Seen from everywhere, though all of its vertices are too far away.
+        let huge = [(-1e7, -1e7), (1e7, -1e7), (0.0, 1e7)].map(|(x, y)| (dvec4(x, y, 0.9, 1.0), [x, y, 1.5]));
+        let vertices = (0..60).map(vertex).chain(huge).collect();
+        Mesh::indexed(vertices, triangles.chain([60, 61, 62]).collect()).expect("whole triangles")
     }
 
     fn states() -> Vec<RenderState> {
@@ -398,25 +402,30 @@ mod tests {
     }
 
     #[test]
-    fn tiles_without_triangles_are_known() {
-        // Four columns and four rows of tiles.
+    fn the_tiles_of_a_triangle_are_those_of_its_box() {
+        // Three columns and three rows of tiles.
+        let (width, height) = (3 * TILE_WIDTH, 3 * TILE_HEIGHT);
         let tiled = Tiled::new();
-        let mut target = Target::<f32>::sized(400, 100);
-        let mut empty_tiles = |half_side: f64| {
-            let vertices = [(-1.0, -1.0), (3.0, -1.0), (-1.0, 3.0)].map(|(x, y)| {
-                let [x, y] = [x, y].map(|way| way * half_side - 0.8);
+        let mut target = Target::<f32>::sized(width as u32, height as u32);
+        let mut touched = |left: f64, bottom: f64, right: f64, top: f64| {
+            let vertices = [(left, bottom), (right, bottom), (left, top)].map(|(x, y)| {
+                let (x, y) = (x / f64::from(width) * 2.0 - 1.0, y / f64::from(height) * 2.0 - 1.0);
                 (dvec4(x, y, 0.0, 1.0), [0.5; 3])
             });
             let mesh = Mesh::unindexed(vertices.to_vec()).expect("a triangle");
             tiled.draw_mesh(&mesh, &Patterned::<false>, &RenderState::default(), &mut target);
             let front = tiled.front.lock().expect("not poisoned");
-            let empty: Vec<bool> = (0..16).map(|tile| front.is_empty(tile)).collect();
-            (empty, front.has_large_triangles())
+            let touched: Vec<usize> = (0..9).filter(|&tile| !front.is_empty(tile)).collect();
+            (touched, front.has_large_triangles())
         };
-        let mut all_but_one = vec![true; 16];
-        all_but_one[0] = false;
-        assert_eq!(empty_tiles(0.1), (all_but_one, false));
-        assert_eq!(empty_tiles(9.0), (vec![false; 16], true));
+        // Large ones cover a tile, or might.
+        assert_eq!(touched(0.0, 0.0, 128.0, 32.0), (vec![0], true));
+        assert_eq!(touched(0.0, 0.0, 127.0, 32.0), (vec![0], false));
+        assert_eq!(touched(0.0, 0.0, 128.0, 31.0), (vec![0], false));
+        assert_eq!(touched(130.0, 40.0, 250.0, 60.0), (vec![4], false));
+        assert_eq!(touched(10.0, 33.0, 380.0, 60.0), (vec![3, 4, 5], false));
+        assert_eq!(touched(130.0, 1.0, 200.0, 95.0), (vec![1, 4, 7], false));
+        assert_eq!(touched(-900.0, -900.0, 2000.0, 2000.0), ((0..9).collect(), true));
     }
 
     #[test]
