@@ -265,6 +265,13 @@ mod tests {
         let both = |[a, b]: [f64; 2]| [a - b, a * 0.1];
         check(Real::map_all([a, b], both)[0], |a, b| Real::map_all([a, b], |[a, b]| [a - b])[0]);
         check(Real::map_all([a, b], both)[1], |a, _| Real::map_all([a], |[a]| [a * 0.1])[0]);
+        let places = instructions.lanes([0.0, 1.5, 2.0, 3.0, 4.9, 5.0, 6.0, 7.0]);
+        let record = |column: usize, row: usize| [column as f64 + 0.25, 10.0 * row as f64];
+        let [columns, rows] = Real::gather(places, I::Lanes::of(3.0), record);
+        assert_eq!(instructions.numbers(columns), [0.25, 1.25, 2.25, 3.25, 4.25, 5.25, 6.25, 7.25]);
+        assert_eq!(instructions.numbers(rows), [30.0; 8]);
+        let [_, rows] = Real::gather(I::Lanes::of(1.0), places, record);
+        assert_eq!(instructions.numbers(rows), [0.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 70.0]);
         // What is the same in all lanes, on either side.
         for number in ZEROS {
             let same = I::Lanes::from(number);

@@ -402,6 +402,26 @@ mod tests {
     }
 
     #[test]
+    fn holes_in_what_covers_a_tile_show_what_is_behind() {
+        // The nearest first, each larger than the view, with holes in every tile.
+        let layer = |depth: f64| {
+            let vertices = [(-4.0, -4.0), (8.0, -4.0), (-4.0, 8.0)];
+            vertices.map(|(x, y)| (dvec4(x, y, depth, 1.0), [6.0 * x + y + 7.0 * depth, 1.0, y * depth]))
+        };
+        let vertices = [-0.5, 0.1, 0.2, 0.6].into_iter().flat_map(layer).collect();
+        let mesh = Mesh::unindexed(vertices).expect("whole triangles");
+        let state = RenderState { load: LoadOp::Clear, ..RenderState::default() };
+        let mut exact = Target::<f32>::sized(300, 70);
+        draw(&mesh, &Patterned::<false>, &state, &Exact::<f32>::new(), &mut exact, &Silent);
+        for instructions in Instructions::available() {
+            let mut target = Target::<f32>::sized(300, 70);
+            let tiled = Tiled::new().with_instructions(instructions);
+            tiled.draw_mesh(&mesh, &Patterned::<false>, &state, &mut target);
+            assert_same(&target, &exact, "layers");
+        }
+    }
+
+    #[test]
     fn the_tiles_of_a_triangle_are_those_of_its_box() {
         // Three columns and three rows of tiles.
         let (width, height) = (3 * TILE_WIDTH, 3 * TILE_HEIGHT);
