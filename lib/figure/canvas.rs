@@ -186,7 +186,17 @@ impl Canvas {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    use glam::{DVec4, dvec4};
+
     use super::*;
+    use crate::clip::ClipVertex;
+    use crate::color::Color;
+    use crate::observer::Observer;
+    use crate::rect::Pixel;
+    use crate::shader::from_fn;
 
     #[test]
     fn panels_lie_side_by_side_where_the_scene_is() {
@@ -196,5 +206,67 @@ mod tests {
         let panels = [0, 1, 3].map(|index| canvas.panel(index, 4));
         let expected = [50.0, 75.0, 125.0].map(|x| Viewport { x, y: 0.0, width: 25.0, height: 100.0 });
         assert_eq!(panels, expected);
+    }
+
+    /// A square in one color, as large as the viewport.
+    fn square(canvas: &mut Canvas, color: Color, state: &RenderState, clears: bool) {
+        let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+        let vertices = corners.map(|(x, y)| dvec4(x, y, 0.0, 1.0)).to_vec();
+        let mesh = Mesh::indexed(vertices, vec![0, 1, 2, 0, 2, 3]).expect("two triangles");
+        let vertex = |&position: &DVec4| ClipVertex { position, varyings: [] };
+        let shader = from_fn(vertex, move |_: [f64; 0]| color.to_f64());
+        if clears {
+            canvas.render(&mesh, &shader, state);
+        } else {
+            canvas.draw(&mesh, &shader, state);
+        }
+    }
+
+    #[test]
+    fn a_scene_is_drawn_where_it_belongs() {
+        for &rasterizer in RasterizerChoice::ALL {
+            let mut canvas = Canvas::new(&Framebuffer::new(20, 10), (10, 10), 0, rasterizer, None);
+            let in_blue = RenderState { clear_color: Color::BLUE, ..RenderState::default() };
+            canvas.clear(&in_blue);
+            assert_eq!(canvas.picture().get(0, 0), Some(Color::BLUE));
+            square(&mut canvas, Color::RED, &in_blue, false);
+            let seen = |canvas: &Canvas| [4, 5, 14, 15].map(|x| canvas.picture().get(x, 5).expect("inside"));
+            assert_eq!(seen(&canvas), [Color::BLUE, Color::RED, Color::RED, Color::BLUE], "in the middle");
+
+            let left = Some(Viewport { x: 0.0, y: 0.0, width: 5.0, height: 10.0 });
+            let in_white =
+                RenderState { clear_color: Color::WHITE, viewport: left, ..RenderState::default() };
+            square(&mut canvas, Color::GREEN, &in_white, false);
+            assert_eq!(seen(&canvas), [Color::GREEN, Color::RED, Color::RED, Color::BLUE], "in its own part");
+            square(&mut canvas, Color::GREEN, &in_white, true);
+            assert_eq!(
+                seen(&canvas),
+                [Color::GREEN, Color::WHITE, Color::WHITE, Color::WHITE],
+                "after clearing"
+            );
+            assert_eq!(canvas.into_picture().get(4, 5), Some(Color::GREEN));
+        }
+    }
+
+    #[test]
+    fn what_is_observed_is_told_with_every_rasterizer() {
+        #[derive(Debug, Default)]
+        struct Written(AtomicUsize);
+        impl Observer for Written {
+            fn written(&self, _pixel: Pixel, _color: Color) {
+                self.0.fetch_add(1, Ordering::Relaxed);
+            }
+        }
+        impl Probe for Written {}
+
+        for &rasterizer in RasterizerChoice::ALL {
+            let written = Arc::new(Written::default());
+            let mut framebuffer = Framebuffer::new(10, 10);
+            framebuffer.set_observer(Some(written.clone()));
+            let mut canvas = Canvas::new(&framebuffer, (10, 10), 0, rasterizer, Some(written.clone()));
+            canvas.clear(&RenderState::default());
+            square(&mut canvas, Color::RED, &RenderState::default(), false);
+            assert!(written.0.load(Ordering::Relaxed) > 90, "{}", rasterizer.name());
+        }
     }
 }

@@ -310,19 +310,19 @@ mod tests {
         };
         let vertex = |i: usize| {
             let [x, y, z, w, a, b, c] = from_fn(|k| number(7 * i + k));
-            // Every other strip is small.
-            let size = [2.6, 0.3][i / 5 % 2];
+            // Some strips are small, and some are very small.
+            let size = [2.6, 0.3, 0.08][i / 5 % 3];
             let center = number(i / 5) - 0.5;
             let position = [(x - 0.5) * size + center, (y - 0.5) * size + center, z * 2.2 - 1.1];
             let w = if i.is_multiple_of(11) { -0.5 } else { w + 0.5 };
             let [x, y, z] = position.map(|along| along * w);
             (dvec4(x, y, z, w), [a, b, c].map(|value| 4.0 * value))
         };
-        let triangles = (0..50).flat_map(|i| [i, i + 1, if i % 5 < 3 { i + 2 } else { i - 2 }]);
+        let triangles = (0..90).flat_map(|i| [i, i + 1, if i % 5 < 3 { i + 2 } else { i - 2 }]);
         // Seen from everywhere, though all of its vertices are too far away.
         let huge = [(-1e7, -1e7), (1e7, -1e7), (0.0, 1e7)].map(|(x, y)| (dvec4(x, y, 0.9, 1.0), [x, y, 1.5]));
-        let vertices = (0..60).map(vertex).chain(huge).collect();
-        Mesh::indexed(vertices, triangles.chain([60, 61, 62]).collect()).expect("whole triangles")
+        let vertices = (0..92).map(vertex).chain(huge).collect();
+        Mesh::indexed(vertices, triangles.chain([92, 93, 94]).collect()).expect("whole triangles")
     }
 
     fn states() -> Vec<RenderState> {
@@ -410,7 +410,12 @@ mod tests {
         };
         let vertices = [-0.5, 0.1, 0.2, 0.6].into_iter().flat_map(layer).collect();
         let mesh = Mesh::unindexed(vertices).expect("whole triangles");
-        let state = RenderState { load: LoadOp::Clear, ..RenderState::default() };
+        // Not clipped: the pieces would not cover those tiles through which they are cut.
+        let state = RenderState {
+            load: LoadOp::Clear,
+            clip_volume: ClipVolume::Everything,
+            ..RenderState::default()
+        };
         let mut exact = Target::<f32>::sized(300, 70);
         draw(&mesh, &Patterned::<false>, &state, &Exact::<f32>::new(), &mut exact, &Silent);
         for instructions in Instructions::available() {
