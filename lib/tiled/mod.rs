@@ -321,8 +321,11 @@ mod tests {
         let triangles = (0..90).flat_map(|i| [i, i + 1, if i % 5 < 3 { i + 2 } else { i - 2 }]);
         // Seen from everywhere, though all of its vertices are too far away.
         let huge = [(-1e7, -1e7), (1e7, -1e7), (0.0, 1e7)].map(|(x, y)| (dvec4(x, y, 0.9, 1.0), [x, y, 1.5]));
-        let vertices = (0..92).map(vertex).chain(huge).collect();
-        Mesh::indexed(vertices, triangles.chain([92, 93, 94]).collect()).expect("whole triangles")
+        // Exactly where very small ones are already: of equal depths the later is seen.
+        let again = (25..30).map(|i| (vertex(i).0, [0.6, 2.0, 3.0]));
+        let vertices = (0..92).map(vertex).chain(huge).chain(again).collect();
+        let more = [92, 93, 94, 95, 96, 97, 96, 97, 98, 97, 98, 99];
+        Mesh::indexed(vertices, triangles.chain(more).collect()).expect("whole triangles")
     }
 
     fn states() -> Vec<RenderState> {
@@ -401,28 +404,33 @@ mod tests {
         }
     }
 
+    /// Layers that are larger than the view, with holes in every tile or with none.
+    fn layers(depths: &[f64], have_holes: bool) -> Mesh<(DVec4, [f64; 3])> {
+        let layer = |(i, &depth): (usize, &f64)| {
+            [(-4.0, -4.0), (8.0, -4.0), (-4.0, 8.0)].map(|(x, y)| {
+                let stripes = if have_holes { 6.0 * x + y + 7.0 * depth } else { 0.5 };
+                (dvec4(x, y, depth, 1.0), [stripes, i as f64 / 2.0, x * depth])
+            })
+        };
+        Mesh::unindexed(depths.iter().enumerate().flat_map(layer).collect()).expect("whole triangles")
+    }
+
     #[test]
-    fn holes_in_what_covers_a_tile_show_what_is_behind() {
-        // The nearest first, each larger than the view, with holes in every tile.
-        let layer = |depth: f64| {
-            let vertices = [(-4.0, -4.0), (8.0, -4.0), (-4.0, 8.0)];
-            vertices.map(|(x, y)| (dvec4(x, y, depth, 1.0), [6.0 * x + y + 7.0 * depth, 1.0, y * depth]))
-        };
-        let vertices = [-0.5, 0.1, 0.2, 0.6].into_iter().flat_map(layer).collect();
-        let mesh = Mesh::unindexed(vertices).expect("whole triangles");
+    fn what_is_hidden_in_all_of_a_tile_shows_only_through_holes() {
         // Not clipped: the pieces would not cover those tiles through which they are cut.
-        let state = RenderState {
-            load: LoadOp::Clear,
-            clip_volume: ClipVolume::Everything,
-            ..RenderState::default()
-        };
-        let mut exact = Target::<f32>::sized(300, 70);
-        draw(&mesh, &Patterned::<false>, &state, &Exact::<f32>::new(), &mut exact, &Silent);
-        for instructions in Instructions::available() {
-            let mut target = Target::<f32>::sized(300, 70);
-            let tiled = Tiled::new().with_instructions(instructions);
-            tiled.draw_mesh(&mesh, &Patterned::<false>, &state, &mut target);
-            assert_same(&target, &exact, "layers");
+        let (load, clip_volume) = (LoadOp::Clear, ClipVolume::Everything);
+        let state = RenderState { load, clip_volume, ..RenderState::default() };
+        let orders: [&[f64]; 3] = [&[-0.5, 0.1, 0.2, 0.6], &[0.6, -0.2, 0.1], &[0.3, 0.0, 0.0]];
+        for (depths, have_holes) in orders.into_iter().flat_map(|depths| [(depths, false), (depths, true)]) {
+            let mesh = layers(depths, have_holes);
+            let mut exact = Target::<f32>::sized(300, 70);
+            draw(&mesh, &Patterned::<false>, &state, &Exact::<f32>::new(), &mut exact, &Silent);
+            for instructions in Instructions::available() {
+                let mut target = Target::<f32>::sized(300, 70);
+                let tiled = Tiled::new().with_instructions(instructions);
+                tiled.draw_mesh(&mesh, &Patterned::<false>, &state, &mut target);
+                assert_same(&target, &exact, &format!("{depths:?}, holes: {have_holes}"));
+            }
         }
     }
 
@@ -481,7 +489,7 @@ mod tests {
         };
         let (blue, green, deep) =
             (state(Color::BLUE, 1.0), state(Color::GREEN, 1.0), state(Color::GREEN, 2.0));
-        // Four columns and four rows of tiles, some beside and some above the ones before.
+        // Four columns and four rows of tiles, or one and three; some beside and some above the ones before.
         let triangle = |[x, y]: [f64; 2]| {
             let vertices = [(-0.1, -0.1), (0.1, -0.1), (0.0, 0.2)];
             vertices.map(|(dx, dy)| (dvec4(x + dx, y + dy, 0.5, 1.0), [0.3, 1.0, 2.0]))
@@ -495,13 +503,14 @@ mod tests {
             (deep, &[[-0.2, -0.8]]),
             (deep, &[]),
         ];
-        for instructions in Instructions::available() {
+        let cases = Instructions::available().flat_map(|it| [(it, (400, 100)), (it, (100, 70))]);
+        for (instructions, (width, height)) in cases {
             let tiled = Tiled::new().with_instructions(instructions);
-            let mut target = Target::<f32>::sized(400, 100);
+            let mut target = Target::<f32>::sized(width, height);
             for (state, places) in pictures {
                 let vertices = places.iter().copied().flat_map(triangle).collect();
                 let mesh = Mesh::unindexed(vertices).expect("whole triangles");
-                let mut exact = Target::<f32>::sized(400, 100);
+                let mut exact = Target::<f32>::sized(width, height);
                 draw(&mesh, &Patterned::<false>, &state, &Exact::<f32>::new(), &mut exact, &Silent);
                 tiled.draw_mesh(&mesh, &Patterned::<false>, &state, &mut target);
                 assert_same(&target, &exact, "one after the other");
