@@ -404,11 +404,23 @@ mod tests {
         }
     }
 
-    /// Layers that are larger than the view, with holes in every tile or with none.
-    fn layers(depths: &[f64], have_holes: bool) -> Mesh<(DVec4, [f64; 3])> {
+    #[derive(Clone, Copy, Debug)]
+    enum Holes {
+        None,
+        InEveryTile,
+        /// Nothing is left of what is nearer than 0.
+        InPlaceOfNear,
+    }
+
+    /// Layers that are larger than the view.
+    fn layers(depths: &[f64], holes: Holes) -> Mesh<(DVec4, [f64; 3])> {
         let layer = |(i, &depth): (usize, &f64)| {
             [(-4.0, -4.0), (8.0, -4.0), (-4.0, 8.0)].map(|(x, y)| {
-                let stripes = if have_holes { 6.0 * x + y + 7.0 * depth } else { 0.5 };
+                let stripes = match holes {
+                    Holes::InEveryTile => 6.0 * x + y + 7.0 * depth,
+                    Holes::InPlaceOfNear if depth < 0.0 => 0.0,
+                    _ => 0.5,
+                };
                 (dvec4(x, y, depth, 1.0), [stripes, i as f64 / 2.0, x * depth])
             })
         };
@@ -421,15 +433,16 @@ mod tests {
         let (load, clip_volume) = (LoadOp::Clear, ClipVolume::Everything);
         let state = RenderState { load, clip_volume, ..RenderState::default() };
         let orders: [&[f64]; 3] = [&[-0.5, 0.1, 0.2, 0.6], &[0.6, -0.2, 0.1], &[0.3, 0.0, 0.0]];
-        for (depths, have_holes) in orders.into_iter().flat_map(|depths| [(depths, false), (depths, true)]) {
-            let mesh = layers(depths, have_holes);
+        let holes = [Holes::None, Holes::InEveryTile, Holes::InPlaceOfNear];
+        for (depths, holes) in orders.into_iter().flat_map(|depths| holes.map(|holes| (depths, holes))) {
+            let mesh = layers(depths, holes);
             let mut exact = Target::<f32>::sized(300, 70);
             draw(&mesh, &Patterned::<false>, &state, &Exact::<f32>::new(), &mut exact, &Silent);
             for instructions in Instructions::available() {
                 let mut target = Target::<f32>::sized(300, 70);
                 let tiled = Tiled::new().with_instructions(instructions);
                 tiled.draw_mesh(&mesh, &Patterned::<false>, &state, &mut target);
-                assert_same(&target, &exact, &format!("{depths:?}, holes: {have_holes}"));
+                assert_same(&target, &exact, &format!("{depths:?}, holes: {holes:?}"));
             }
         }
     }
