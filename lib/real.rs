@@ -245,6 +245,7 @@ macro_rules! plain_number {
             #[inline]
             fn gather_color(column: Self, row: Self, row_bits: u32, colors: &[Color]) -> Color {
                 // A plane has fewer than 2³² columns and rows; from a float, a `u32` is made faster than a `usize`.
+                // Both in one `map`: written one by one, LLVM makes the exact rasterizer a fifth slower in `f64`.
                 let [column, row] = [column, row].map(|index| index as u32 as usize);
                 colors[(row << row_bits) + column]
             }

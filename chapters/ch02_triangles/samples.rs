@@ -49,8 +49,7 @@ fn draw(samples: &mut Samples<'_>, patch: &Patch, shading: Shading) {
         let [second, third]: [f64; 2] = coverage.weights(coverage.edge_values(place));
         [1.0 - second - third, second, third]
     };
-    let rect = samples.rect();
-    for (x, y) in rect.pixels() {
+    for (x, y) in samples.rect().pixels() {
         for (sample, place) in samples.of_pixel(x, y) {
             if coverage.covers(coverage.edge_values(place)) {
                 let depth = (0..3).map(|i| weights(place)[i] * patch.vertices[i][2]).sum();

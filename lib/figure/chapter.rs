@@ -374,8 +374,13 @@ impl Variant {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
     use super::*;
     use crate::color::Color;
+    use crate::observer::Observer;
+    use crate::probe::Probe;
 
     #[test]
     fn only_a_picture_of_a_model_has_a_subject() {
@@ -425,13 +430,13 @@ mod tests {
     #[test]
     fn each_kind_of_figure_is_drawn_and_observed() {
         #[derive(Debug, Default)]
-        struct Cleared(std::sync::atomic::AtomicUsize);
-        impl crate::observer::Observer for Cleared {
+        struct Cleared(AtomicUsize);
+        impl Observer for Cleared {
             fn cleared(&self, _color: Color) {
-                self.0.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+                self.0.fetch_add(1, Ordering::Relaxed);
             }
         }
-        impl crate::probe::Probe for Cleared {}
+        impl Probe for Cleared {}
 
         let gray =
             |picture: &mut Framebuffer, knobs: &Knobs| picture.clear(Color::gray(knobs.number("gray") as u8));
@@ -446,13 +451,13 @@ mod tests {
             (Variant::of_model_in_plane("plane", in_plane, assets, "-"), Color::WHITE),
         ];
         for (variant, color) in variants {
-            let (variant, observer) = (variant.size(4, 3), std::sync::Arc::new(Cleared::default()));
+            let (variant, observer) = (variant.size(4, 3), Arc::new(Cleared::default()));
             let subject = variant.subject().expect("in assets/");
             let options = variant.options(subject.as_ref());
             assert_eq!((options.size, options.frame, options.knobs.changed().is_empty()), ((4, 3), 0, true));
             let picture = variant.draw(&DrawOptions { observer: Some(observer.clone()), ..options });
             assert_eq!((picture.width(), picture.height(), picture.get(3, 2)), (4, 3, Some(color)));
-            assert_eq!(observer.0.load(std::sync::atomic::Ordering::Relaxed), 1, "{}", variant.name);
+            assert_eq!(observer.0.load(Ordering::Relaxed), 1, "{}", variant.name);
             let expected = if variant.has_model() { Color::BLACK } else { color };
             assert_eq!(variant.draw(&variant.options(None)).get(3, 2), Some(expected), "without its subject");
         }

@@ -32,8 +32,7 @@ pub fn overdraw(variant: &Variant, options: &DrawOptions<'_>) -> (Framebuffer, V
 
     let mut picture = Framebuffer::new(width, height);
     let mut totals = [0_usize; HEAT.len()];
-    let places = screen.pixels();
-    for ((x, y), &count) in places.zip(&counter.lock().counts) {
+    for ((x, y), &count) in screen.pixels().zip(&counter.lock().counts) {
         totals[usize::from(count)] += 1;
         picture.set(x, y, HEAT[usize::from(count)].0);
     }

@@ -252,7 +252,7 @@ impl Real for Numbers {
         let numbers = values.map(Self::to_array);
         let result = |lane: usize| function(from_fn(|k| f64::from(numbers[k][lane])));
         match values.into_iter().find_map(Self::proof) {
-            None => result(0).map(Self::of),
+            None => Self::array_of(result(0)),
             Some(avx2) => {
                 let results = each_lane(result);
                 from_fn(|k| Eight(SimdFrom::simd_from(avx2, each_lane(|lane| results[lane][k] as f32))))

@@ -370,14 +370,13 @@ mod tests {
         }
     }
 
-    /// Two pictures one after the other, the second one on what the first has left, by all instructions of this processor.
+    /// With all instructions of this processor: a mesh, twice with one `Tiled`, and triangles that others have clipped.
     fn compare<const SLOPED: bool>(state: &RenderState, round: usize) {
         // Two columns and three rows of tiles, which are not whole.
-        let below = Target::<f32>::sized(131, 70);
+        let mut cleared = Target::<f32>::sized(131, 70);
+        cleared.clear(Color::GREEN, 1.0);
         let (mesh, shader) = (scene(round), Patterned::<SLOPED>);
-        let mut exact = below.clone();
-        exact.clear(Color::GREEN, 1.0);
-        let cleared = exact.clone();
+        let mut exact = cleared.clone();
         draw(&mesh, &shader, state, &Exact::<f32>::new(), &mut exact, &Silent);
         let drawn =
             exact.color.rect().pixels().filter(|&(x, y)| exact.color.get(x, y) != cleared.color.get(x, y));

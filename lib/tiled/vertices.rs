@@ -133,7 +133,7 @@ impl Vertices {
 impl Vertices {
     /// Hands the vertices out in parts, to all threads; `shade` gets the number of the first in each.
     fn each_part(&mut self, blocks: usize, shade: &(dyn Fn(usize, Slots<'_>) + Sync)) {
-        // Of whole groups that are shaded at a time.
+        // A multiple of `AT_A_TIME`: no group is divided.
         const PART: usize = 1024;
         let positions = self.positions.par_chunks_mut(PART);
         let parts = positions.zip(self.outside.par_chunks_mut(PART));

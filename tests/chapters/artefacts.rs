@@ -62,8 +62,7 @@ fn draw(chapter: &str, name: &str) -> Framebuffer {
 }
 
 fn count(picture: &Framebuffer, is_meant: impl Fn(i32, i32, Color) -> bool) -> usize {
-    let pixels = picture.rect().pixels();
-    pixels.filter(|&(x, y)| is_meant(x, y, picture.get(x, y).expect("inside"))).count()
+    picture.rect().pixels().filter(|&(x, y)| is_meant(x, y, picture.get(x, y).expect("inside"))).count()
 }
 
 #[test]

@@ -105,9 +105,7 @@ fn what_is_drawn_in_pixels_is_cropped_and_not_scaled() {
 }
 
 fn differing(picture: &Framebuffer, other: impl Fn(i32, i32) -> Option<Color>) -> usize {
-    let rect = picture.rect();
-    let pixels = rect.pixels();
-    pixels.filter(|&(x, y)| picture.get(x, y) != other(x, y)).count()
+    picture.rect().pixels().filter(|&(x, y)| picture.get(x, y) != other(x, y)).count()
 }
 
 #[test]
