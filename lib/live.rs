@@ -661,6 +661,8 @@ mod tests {
         assert_eq!(seen(&play(live(), &events).picture()).1, Some((20, 9)));
         let out = play(live(), &[Event::Press((4, 6)), Event::Drag((500, -9))]);
         assert_eq!(out.scene.knobs.point("dot"), dvec2(39.0, 0.0), "as far as the border");
+        let out = play(out, &[Event::Drag((-9, 500))]);
+        assert_eq!(out.scene.knobs.point("dot"), dvec2(0.0, 29.0), "and the other one");
         let missed = [Event::Press((30, 20)), Event::Drag((20, 10))];
         assert_eq!(seen(&play(live(), &missed).picture()).1, Some((5, 6)), "nothing was near");
         // At twice the size a pixel is half a unit of the scene.
@@ -742,6 +744,8 @@ mod tests {
     fn variants_take_over_knobs_and_an_asked_size() {
         let other = play(live(), &[Event::Turn(10), Event::NextVariant(1)]);
         assert_eq!(seen(&other.picture()), (120, Some((4, 6))));
+        let held = play(live(), &[Event::NextKnob(1), Event::NextVariant(1)]);
+        assert_eq!(held.knob().expect("a knob").0.name, "dot", "it stays in the hand");
         assert_eq!(play(other, &[Event::NextVariant(-3)]).scene().variant.name, "moving");
         assert_eq!(play(live(), &[Event::Variant(7)]).scene().variant.name, "wrong", "there is no eighth");
         let mut large = live();
@@ -777,6 +781,8 @@ mod tests {
         let near = play(live(), &[Event::Magnify(1, (5, 6)), Event::Magnify(2, (5, 6))]);
         assert_eq!(near.pixel_at((5, 6)), Some((5, 6)), "what is under the pointer stays there");
         assert_eq!(near.zoom().map(|zoom| zoom.factor), Some(4));
+        let twice = play(live(), &[Event::Magnify(1, (5, 6))]);
+        assert_eq!([29, 30].map(|y| twice.pixel_at((0, y)).is_some()), [true, false], "15 rows of two");
         let nearest = play(live(), &[Event::Magnify(99, (5, 6))]);
         assert_eq!(nearest.zoom().map(|zoom| zoom.factor), Some(Zoom::MAX_FACTOR));
         let picture = near.picture();

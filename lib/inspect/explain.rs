@@ -353,7 +353,11 @@ impl Explainer {
         if let Some(primitive) = self.primitive.take_if(|_| !self.is_open)
             && let Some(reason) = miss(&primitive, self.here(), self.screen())
         {
-            let name = if matches!(*primitive, Primitive::Line(_)) { "line" } else { "triangle" };
+            let name = match *primitive {
+                Primitive::Line(_) => "line",
+                Primitive::Half(_) => "half",
+                Primitive::Triangle(_) | Primitive::Coverage(_) => "triangle",
+            };
             let piece = if self.pieces > 1 { format!(", piece {}", self.pieces) } else { String::new() };
             let title = format!("{name} {}{piece}: {reason}", self.number);
             self.found.others.push(Entry::new("missed", title));

@@ -12,6 +12,8 @@ mod overdraw;
 mod record;
 mod rows;
 mod steps;
+#[cfg(test)]
+mod tests;
 
 pub use history::History;
 #[cfg(feature = "program")]

@@ -1,0 +1,159 @@
+//! Whole histories of small scenes, word for word: each number in them is one that a reader can compute.
+
+use glam::{DVec3, DVec4, dvec2, dvec3, dvec4};
+
+use super::{History, history};
+use crate::clip::ClipVertex;
+use crate::color::Color;
+use crate::cull::CullMode;
+use crate::figure::picture::draw_enlarged;
+use crate::figure::{Canvas, DrawOptions, RasterizerChoice, Variant};
+use crate::framebuffer::Framebuffer;
+use crate::interpolate::{Interpolation, ScreenVertex, step_values};
+use crate::line::{StepAxis, dda};
+use crate::mesh::Mesh;
+use crate::payload::Walk;
+use crate::real::Real;
+use crate::rect::Pixel;
+use crate::scanline::{EdgeWalk, spans};
+use crate::shader::{Shaded, Shader};
+use crate::state::RenderState;
+
+/// A vertex in clip space, whose x and y are its place in the model, too; and its values.
+type Vertex = (DVec4, [f64; 2]);
+
+/// Two values as red and green, translucent where the second is large; nothing where the first is.
+struct Values;
+
+impl Shader<2> for Values {
+    type Attributes = Vertex;
+
+    fn vertex(&self, &(position, varyings): &Vertex) -> ClipVertex<2> {
+        ClipVertex { position, varyings }
+    }
+
+    fn position(&self, (position, _): &Vertex) -> Option<DVec3> {
+        Some(dvec3(position.x, position.y, 0.0))
+    }
+
+    fn fragment<R: Real>(&self, [u, v]: [R; 2]) -> Shaded<R> {
+        let opacity = R::select(v.is_less(R::of(100.0)), R::of(1.0), R::of(0.5));
+        Shaded::translucent([u, v, R::of(0.0)], opacity).discard(R::of(200.0).is_less(u))
+    }
+}
+
+/// A triangle of these places in NDC, all at the same depth.
+fn flat(places: [[f64; 2]; 3], z: f64) -> [Vertex; 3] {
+    let values = [[300.0, 0.0], [0.0, 120.0], [0.0, 120.0]];
+    [0, 1, 2].map(|i| (dvec4(places[i][0], places[i][1], z, 1.0), values[i]))
+}
+
+const WHOLE: [[f64; 2]; 3] = [[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0]];
+
+/// What the pipeline may do with a triangle, one after the other, in a picture of 16×16.
+fn pipeline(canvas: &mut Canvas, interpolation: Interpolation) {
+    // Runs into the picture, from ω = 1 to ω = 4; its first vertex is nearer than the near plane.
+    let clipped = [
+        (dvec4(-1.0, -1.0, -1.5, 1.0), [0.0, 80.0]),
+        (dvec4(4.0, -4.0, 2.0, 4.0), [100.0, 0.0]),
+        (dvec4(-4.0, 4.0, 2.0, 4.0), [0.0, 160.0]),
+    ];
+    let [a, b, c] = WHOLE;
+    let triangles = [
+        clipped,
+        flat([a, c, b], -0.5),
+        // Its left edge runs through the centers of column 8.
+        flat([[0.0625, -1.0], [1.0, -1.0], [0.0625, 1.0]], -0.5),
+        flat(WHOLE.map(|[x, y]| [x + 9.0, y]), -0.5),
+        flat(WHOLE, 0.9),
+    ];
+    let mesh = Mesh::unindexed(triangles.concat()).expect("whole triangles");
+    let state = RenderState { cull: CullMode::Back, interpolation, ..RenderState::default() };
+    canvas.draw(&mesh, &Values, &state);
+}
+
+fn correct(canvas: &mut Canvas) {
+    pipeline(canvas, Interpolation::PerspectiveCorrect);
+}
+
+fn affine(canvas: &mut Canvas) {
+    pipeline(canvas, Interpolation::Affine);
+}
+
+fn reciprocal(canvas: &mut Canvas) {
+    pipeline(canvas, Interpolation::Reciprocal);
+}
+
+/// The stages of the first chapters, one after the other, in a picture of 16×16.
+fn early(picture: &mut Framebuffer) {
+    picture.clear(Color::BLUE);
+    picture.set(3, 4, Color::RED);
+    let scissor = picture.scissor();
+    for (from, to) in [((0.0, 2.5), (9.0, 7.0)), ((4.0, 12.0), (2.0, 1.0)), ((0.0, 5.0), (9.0, 0.0))] {
+        dda(from.into(), to.into(), StepAxis::Longer, scissor.clone(), |x, y| picture.set(x, y, Color::GREEN));
+    }
+    let triangle = [dvec2(1.0, 1.0), dvec2(9.0, 4.0), dvec2(2.0, 12.0)];
+    spans(triangle, EdgeWalk::Clamped, scissor.clone(), |span| {
+        span.columns().for_each(|x| picture.set(x, span.y, Color::RED));
+    });
+    spans(triangle.map(|p| p + 3.0), EdgeWalk::Clamped, scissor.clone(), |_| {});
+    let values = [[0.0, 10.0], [80.0, 20.0], [160.0, 30.0]];
+    let triangle = [0, 1, 2].map(|i| ScreenVertex { position: triangle[i], varyings: values[i] });
+    step_values(triangle, Walk::default(), scissor, |x, y, [red, green]| {
+        picture.set(x, y, Color::truncated([red, green, 0.0]));
+    });
+    draw_enlarged(picture, (4, 4), |screen| {
+        screen.clear(Color::BLACK);
+        let scissor = screen.scissor();
+        dda(dvec2(0.0, 0.0), dvec2(3.0, 3.0), StepAxis::Longer, scissor, |x, y| screen.set(x, y, Color::WHITE));
+    });
+}
+
+fn of_pipeline(draw: fn(&mut Canvas), rasterizer: RasterizerChoice, pixel: Pixel) -> History {
+    let variant = Variant::with_pipeline("pipeline", draw, "").size(16, 16);
+    let options = DrawOptions { rasterizer, ..variant.options(None) };
+    history("ch00", &variant, &options, pixel)
+}
+
+fn of_early(pixel: Pixel) -> History {
+    let variant = Variant::new("early", early, "").size(16, 16);
+    history("ch00", &variant, &variant.options(None), pixel)
+}
+
+/// Pins a text as `snapshots/NAME.snap`.
+fn pin(name: &str, text: &str) {
+    let mut settings = insta::Settings::clone_current();
+    settings.set_prepend_module_to_snapshot(false);
+    settings.set_omit_expression(true);
+    settings.bind(|| insta::assert_snapshot!(name, text));
+}
+
+#[test]
+fn lines_halves_and_stepped_values() {
+    pin("early-upper-half", &of_early((3, 4)).to_string());
+    pin("early-lower-half", &of_early((2, 2)).to_string());
+    pin("early-nothing", &of_early((12, 13)).to_string());
+}
+
+#[test]
+fn what_the_books_rows_step() {
+    use RasterizerChoice::Scanline;
+    pin("scanline-correct", &of_pipeline(correct, Scanline, (3, 3)).to_string());
+    pin("scanline-affine", &of_pipeline(affine, Scanline, (3, 3)).to_string());
+    pin("scanline-reciprocal", &of_pipeline(reciprocal, Scanline, (5, 1)).to_string());
+}
+
+#[test]
+fn edge_functions_and_weights() {
+    use RasterizerChoice::Exact;
+    pin("exact-piece", &of_pipeline(correct, Exact, (3, 3)).to_string());
+    pin("exact-tie", &of_pipeline(correct, Exact, (8, 8)).to_string());
+    pin("exact-discarded", &of_pipeline(correct, Exact, (9, 1)).to_string());
+}
+
+#[test]
+fn the_same_as_json() {
+    pin("early-json", &of_early((3, 4)).to_json());
+    pin("scanline-json", &of_pipeline(correct, RasterizerChoice::Scanline, (3, 3)).to_json());
+    pin("exact-json", &of_pipeline(correct, RasterizerChoice::Exact, (8, 8)).to_json());
+}
