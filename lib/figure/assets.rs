@@ -321,12 +321,12 @@ fn numbers() -> Framebuffer {
     let mut small = Framebuffer::new(128, 128);
     for i in 0..64 {
         let (left, bottom) = (16 * (i % 8), 16 * (i / 8));
-        let color = hue((i * 23 % 64) as f64 / 64.0);
+        let color = hue(f64::from(i * 23) / 64.0);
         small.fill(Rect { left, bottom, right: left + 16, top: bottom + 16 }, Color::gray(20));
         // A fine checkerboard, so that a texel from elsewhere shows.
         let dark = Color::truncated(color.to_f64().map(|channel| channel * 0.72));
         for (x, y) in (0..15).flat_map(|y| (0..15).map(move |x| (x, y))) {
-            small.set(left + x, bottom + y, if (x / 3 + y / 3) % 2 == 0 { color } else { dark });
+            small.set(left + x, bottom + y, if x / 3 % 2 == y / 3 % 2 { color } else { dark });
         }
         let number = i + 1;
         let digits = if number < 10 { vec![(6, number)] } else { vec![(4, number / 10), (9, number % 10)] };
@@ -337,7 +337,7 @@ fn numbers() -> Framebuffer {
     blocks(&small, 4)
 }
 
-/// A light color of a hue in 0..1: red, yellow, green, cyan, blue, magenta, and red again.
+/// A light color of a hue, of which the fraction counts: red, yellow, green, cyan, blue, magenta, and red again.
 fn hue(hue: f64) -> Color {
     let channel = |shift: f64| {
         let place = (hue + shift) - (hue + shift).floor();
@@ -380,11 +380,11 @@ fn bricks() -> Framebuffer {
 fn bricks_normals() -> Framebuffer {
     let height = |x: i32, y: i32| {
         let (x, y) = (x.rem_euclid(128), y.rem_euclid(128));
-        let along = (x + if y / 16 % 2 == 0 { 0 } else { 16 }) % 128;
+        let along = x + if y / 16 % 2 == 0 { 0 } else { 16 };
         // How far inside its brick a texel is; the mortar is 2 wide, at the lower and left border of a brick.
         let inside =
             [along % 32 - 2, 31 - along % 32, y % 16 - 2, 15 - y % 16].into_iter().min().unwrap_or(0);
-        let rounded = f64::from(inside.clamp(-1, 2) + 1);
+        let rounded = f64::from(inside.clamp(-1, 2));
         rounded + 0.12 * noise(x / 2, y / 2) + 0.08 * noise(x, y + 500)
     };
     let mut picture = Framebuffer::new(128, 128);

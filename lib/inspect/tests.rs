@@ -3,13 +3,14 @@
 use glam::{DVec3, DVec4, dvec2, dvec3, dvec4};
 
 use super::{History, history};
-use crate::clip::ClipVertex;
+use crate::clip::{ClipTest, ClipVertex, NdcVertex, Plane, fan};
 use crate::color::Color;
 use crate::cull::CullMode;
+use crate::exact::samples::{ROTATED_4, Samples};
 use crate::figure::picture::draw_enlarged;
 use crate::figure::{Canvas, DrawOptions, RasterizerChoice, Variant};
 use crate::framebuffer::Framebuffer;
-use crate::interpolate::{Interpolation, ScreenVertex, step_values};
+use crate::interpolate::{Interpolation, Projected, ScreenVertex, step_values};
 use crate::line::{StepAxis, dda};
 use crate::mesh::Mesh;
 use crate::payload::Walk;
@@ -18,6 +19,7 @@ use crate::rect::Pixel;
 use crate::scanline::{EdgeWalk, spans};
 use crate::shader::{Shaded, Shader};
 use crate::state::RenderState;
+use crate::target::Target;
 
 /// A vertex in clip space, whose x and y are its place in the model, too; and its values.
 type Vertex = (DVec4, [f64; 2]);
@@ -59,6 +61,7 @@ fn pipeline(canvas: &mut Canvas, interpolation: Interpolation) {
         (dvec4(-4.0, 4.0, 2.0, 4.0), [0.0, 160.0]),
     ];
     let [a, b, c] = WHOLE;
+    let [near, right, left] = clipped;
     let triangles = [
         clipped,
         flat([a, c, b], -0.5),
@@ -66,6 +69,7 @@ fn pipeline(canvas: &mut Canvas, interpolation: Interpolation) {
         flat([[0.0625, -1.0], [1.0, -1.0], [0.0625, 1.0]], -0.5),
         flat(WHOLE.map(|[x, y]| [x + 9.0, y]), -0.5),
         flat(WHOLE, 0.9),
+        [left, right, near],
     ];
     let mesh = Mesh::unindexed(triangles.concat()).expect("whole triangles");
     let state = RenderState { cull: CullMode::Back, interpolation, ..RenderState::default() };
@@ -90,22 +94,28 @@ fn early(picture: &mut Framebuffer) {
     picture.set(3, 4, Color::RED);
     let scissor = picture.scissor();
     for (from, to) in [((0.0, 2.5), (9.0, 7.0)), ((4.0, 12.0), (2.0, 1.0)), ((0.0, 5.0), (9.0, 0.0))] {
-        dda(from.into(), to.into(), StepAxis::Longer, scissor.clone(), |x, y| picture.set(x, y, Color::GREEN));
+        dda(from.into(), to.into(), StepAxis::Longer, scissor.clone(), |x, y| {
+            picture.set(x, y, Color::GREEN)
+        });
     }
     let triangle = [dvec2(1.0, 1.0), dvec2(9.0, 4.0), dvec2(2.0, 12.0)];
     spans(triangle, EdgeWalk::Clamped, scissor.clone(), |span| {
         span.columns().for_each(|x| picture.set(x, span.y, Color::RED));
     });
     spans(triangle.map(|p| p + 3.0), EdgeWalk::Clamped, scissor.clone(), |_| {});
+    // The row of a middle vertex between two rows belongs to both halves.
+    let positions = [dvec2(1.0, 1.0), dvec2(9.0, 4.5), dvec2(2.0, 12.0)];
     let values = [[0.0, 10.0], [80.0, 20.0], [160.0, 30.0]];
-    let triangle = [0, 1, 2].map(|i| ScreenVertex { position: triangle[i], varyings: values[i] });
+    let triangle = [0, 1, 2].map(|i| ScreenVertex { position: positions[i], varyings: values[i] });
     step_values(triangle, Walk::default(), scissor, |x, y, [red, green]| {
         picture.set(x, y, Color::truncated([red, green, 0.0]));
     });
     draw_enlarged(picture, (4, 4), |screen| {
         screen.clear(Color::BLACK);
         let scissor = screen.scissor();
-        dda(dvec2(0.0, 0.0), dvec2(3.0, 3.0), StepAxis::Longer, scissor, |x, y| screen.set(x, y, Color::WHITE));
+        dda(dvec2(0.0, 0.0), dvec2(3.0, 3.0), StepAxis::Longer, scissor, |x, y| {
+            screen.set(x, y, Color::WHITE)
+        });
     });
 }
 
@@ -115,8 +125,31 @@ fn of_pipeline(draw: fn(&mut Canvas), rasterizer: RasterizerChoice, pixel: Pixel
     history("ch00", &variant, &options, pixel)
 }
 
-fn of_early(pixel: Pixel) -> History {
-    let variant = Variant::new("early", early, "").size(16, 16);
+/// Samples of a pixel, and a triangle that a program clips by itself, as chapter 7 does: x and y are its places.
+fn by_itself(picture: &mut Framebuffer) {
+    let mut samples = Samples::like(picture, &ROTATED_4);
+    for (sample, depth, color) in [(0, 0.5, Color::RED), (3, 0.5, Color::GREEN), (0, 0.75, Color::BLUE)] {
+        samples.draw(3, 4, sample, depth, color);
+    }
+    picture.set(3, 4, samples.resolved().get(3, 4).unwrap_or_default());
+
+    let vertex = |x, y, w| ClipVertex { position: dvec4(x, y, 0.5, 1.0) * w, varyings: [x] };
+    let triangle = [vertex(0.0, 0.0, 1.0), vertex(16.0, 0.0, 4.0), vertex(0.0, 16.0, 4.0)];
+    let mut target = Target::like(picture);
+    target.clear(Color::BLACK, 1.0);
+    for piece in fan(target.clip_triangle(triangle, &[Plane::in_front(2.0)], ClipTest::BeforeDivide)) {
+        let on_screen = piece.map(|vertex| {
+            let NdcVertex { position, w, varyings } = NdcVertex::from(vertex);
+            let projected = Projected { w, values: varyings };
+            ScreenVertex { position: position.truncate(), varyings: (projected, position.z) }
+        });
+        target.fill(on_screen, |[red]| Color::truncated([red, 0.0, 0.0]));
+    }
+    *picture = target.color;
+}
+
+fn of_framebuffer(draw: fn(&mut Framebuffer), pixel: Pixel) -> History {
+    let variant = Variant::new("stages", draw, "").size(16, 16);
     history("ch00", &variant, &variant.options(None), pixel)
 }
 
@@ -130,9 +163,15 @@ fn pin(name: &str, text: &str) {
 
 #[test]
 fn lines_halves_and_stepped_values() {
-    pin("early-upper-half", &of_early((3, 4)).to_string());
-    pin("early-lower-half", &of_early((2, 2)).to_string());
-    pin("early-nothing", &of_early((12, 13)).to_string());
+    pin("early-upper-half", &of_framebuffer(early, (3, 4)).to_string());
+    pin("early-lower-half", &of_framebuffer(early, (2, 2)).to_string());
+    pin("early-nothing", &of_framebuffer(early, (12, 13)).to_string());
+}
+
+#[test]
+fn samples_and_pieces_of_a_program() {
+    pin("samples", &of_framebuffer(by_itself, (3, 4)).to_string());
+    pin("pieces", &of_framebuffer(by_itself, (6, 8)).to_string());
 }
 
 #[test]
@@ -153,7 +192,7 @@ fn edge_functions_and_weights() {
 
 #[test]
 fn the_same_as_json() {
-    pin("early-json", &of_early((3, 4)).to_json());
+    pin("early-json", &of_framebuffer(early, (3, 4)).to_json());
     pin("scanline-json", &of_pipeline(correct, RasterizerChoice::Scanline, (3, 3)).to_json());
     pin("exact-json", &of_pipeline(correct, RasterizerChoice::Exact, (8, 8)).to_json());
 }

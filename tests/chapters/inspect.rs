@@ -33,7 +33,7 @@ fn what_is_reported_is_what_stands_in_the_picture_and_no_event_is_unknown() {
     let rows: Vec<_> = variants().collect();
     rows.par_iter().for_each(|&(chapter, variant)| {
         let subject = variant.subject().expect("assets");
-        let own = DrawOptions { size: smaller(variant, 2), ..variant.options(subject.as_ref()) };
+        let own = DrawOptions { size: smaller(variant, 4), ..variant.options(subject.as_ref()) };
         let both = [RasterizerChoice::Scanline, RasterizerChoice::Exact];
         let choices = variant.rasterizer.map_or(vec![own.rasterizer], |_| both.to_vec());
         for rasterizer in choices {

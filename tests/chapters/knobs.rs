@@ -23,7 +23,7 @@ fn changes(variant: &Variant, knob: &Knob, others: &[(&Knob, Value)]) -> bool {
         let mut values = values(variant, knob).into_iter();
         values.any(|value| with(variant, size, &[others, &[(knob, value)]].concat()) != before)
     };
-    changes(smaller(variant, 2)) || changes(variant.size)
+    changes(smaller(variant, 4)) || changes(variant.size)
 }
 
 /// Values that a knob can have, both ends of its range among them.
