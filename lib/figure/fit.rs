@@ -121,6 +121,16 @@ mod tests {
     }
 
     #[test]
+    fn a_triangle_is_placed_and_carries_what_it_did() {
+        let fit = Fit::new(Rect::sized(1920, 1080), [640.0, 480.0]);
+        let corners = [(0.0, 0.0), (640.0, 0.0), (0.0, 480.0)];
+        let triangle = corners.map(|(x, y)| ScreenVertex { position: dvec2(x, y), varyings: x + y });
+        let placed = fit.triangle(triangle);
+        assert_eq!(placed.map(|vertex| vertex.position), triangle.map(|vertex| fit.at(vertex.position)));
+        assert_eq!(placed.map(|vertex| vertex.varyings), [0.0, 640.0, 480.0]);
+    }
+
+    #[test]
     fn a_mark_grows_with_the_scene() {
         let fit = Fit::new(Rect::sized(1280, 960), [640.0, 480.0]);
         let mark = fit.mark(fit.at(dvec2(10.0, 20.0)), 4.0);

@@ -282,7 +282,7 @@ pub(super) mod tests {
     pub(in super::super) const KNOBS: &[Knob] = &[
         Knob::number("tilt", 30.0, [0.0, 80.0], "°", "-"),
         Knob::whole("bits", 4, [1, 8], "", "-"),
-        Knob::choice("rule", &["book", "top-left"], "-"),
+        Knob::choice("rule", &["book", "top-left", "any"], "-"),
         Knob::switch("clip", true, "-"),
         Knob::point("p", [3.5, 4.0], "-"),
         Knob::color("paint", Color::RED, "-"),
@@ -293,7 +293,7 @@ pub(super) mod tests {
         let at = |index: usize, fraction: f64| KNOBS[index].at(fraction);
         assert_eq!([at(0, 0.0), at(0, 0.5), at(0, 1.0)], [0.0, 40.0, 80.0].map(|v| Some(Value::Number(v))));
         assert_eq!([at(1, 0.0), at(1, 0.5), at(1, 1.0)], [1, 5, 8].map(|v| Some(Value::Whole(v))));
-        assert_eq!([at(2, 0.0), at(2, 1.0)], [0, 1].map(|v| Some(Value::Choice(v))));
+        assert_eq!([at(2, 0.0), at(2, 1.0)], [0, 2].map(|v| Some(Value::Choice(v))));
         assert_eq!([at(3, 0.0), at(3, 1.0)], [false, true].map(|v| Some(Value::Switch(v))));
         assert_eq!((at(4, 0.5), at(5, 0.5)), (None, None));
     }
@@ -309,11 +309,29 @@ pub(super) mod tests {
         assert_eq!(stepped(0, 1000), Value::Number(80.0));
         assert_eq!(stepped(1, -9), Value::Whole(1));
         assert_eq!(stepped(2, 1), Value::Choice(1));
-        assert_eq!(stepped(2, -1), Value::Choice(1));
+        assert_eq!(stepped(2, -1), Value::Choice(2));
         assert_eq!((stepped(3, 1), stepped(3, 2)), (Value::Switch(false), Value::Switch(true)));
         assert_eq!(stepped(4, 2), Value::Point(dvec2(5.5, 4.0)));
-        assert_eq!(stepped(5, 1), Value::Color(Color::rgb(255, 16, 16)));
-        let choices = [1, 9].map(|index| KNOBS[2].shown(Value::Choice(index)));
-        assert_eq!(choices, ["top-left", "9"], "of what has no name, the number");
+        assert_eq!(stepped(5, 2), Value::Color(Color::rgb(255, 32, 32)));
+        let choices = [1, 3].map(|index| KNOBS[2].shown(Value::Choice(index)));
+        assert_eq!(choices, ["top-left", "3"], "of what has no name, the number");
+    }
+
+    #[test]
+    fn a_range_is_told_in_words() {
+        let bare = Knob::number("near", 1.0, [0.5, 2.0], "", "-");
+        let ranges: Vec<String> = KNOBS.iter().chain([&bare]).map(Knob::range).collect();
+        assert_eq!(
+            ranges,
+            [
+                "a number, 0 to 80 °",
+                "a whole number, 1 to 8",
+                "book | top-left | any",
+                "on | off",
+                "a point, X,Y in pixels of the variant's own size, y up",
+                "a color, RRGGBB",
+                "a number, 0.5 to 2",
+            ]
+        );
     }
 }

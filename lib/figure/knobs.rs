@@ -233,10 +233,13 @@ mod tests {
         assert_eq!(put("tilt", Value::Number(f64::NEG_INFINITY)), "tilt=0");
         assert_eq!(put("bits", Value::Whole(i32::MIN)), "bits=1");
         assert_eq!(put("p", Value::Point(dvec2(-9.0, f64::INFINITY))), "p=0,48");
+        assert_eq!(put("rule", Value::Choice(2)), "rule=any");
+        assert_eq!(put("clip", Value::Switch(false)), "clip=off");
+        assert_eq!(put("paint", Value::Color(Color::GREEN)), "paint=00ff00");
         let ignored = [
             ("tilt", Value::Number(f64::NAN)),
             ("tilt", Value::Whole(1)),
-            ("rule", Value::Choice(2)),
+            ("rule", Value::Choice(3)),
             ("p", Value::Point(dvec2(f64::NAN, 1.0))),
             ("other", Value::Switch(false)),
         ];
@@ -259,6 +262,10 @@ mod tests {
             knobs.changed(),
             ["tilt=80", "bits=8", "rule=top-left", "clip=off", "p=64,48", "paint=00ff7f"]
         );
+        for (text, is_on) in [("on", true), ("0", false), ("true", true), ("false", false), ("1", true)] {
+            assert_eq!(knobs.set(&format!("clip={text}")), Ok(()), "{text}");
+            assert_eq!(knobs.is_on("clip"), is_on, "{text}");
+        }
         let before = knobs.clone();
         for bad in [
             "tilt",
@@ -282,6 +289,14 @@ mod tests {
             assert!(knobs.set(bad).is_err(), "{bad}");
         }
         assert_eq!(knobs, before, "what is refused changes nothing");
+    }
+
+    #[test]
+    fn a_refusal_says_why() {
+        let refusal = |text| Knobs::new(KNOBS, (64, 48)).set(text).expect_err("it is refused").to_string();
+        assert_eq!(refusal("tilt"), "expected NAME=VALUE, not 'tilt'");
+        assert_eq!(refusal("other=1"), "there is no knob 'other'");
+        assert_eq!(refusal("tilt=81"), "'tilt' cannot be '81': it is a number, 0 to 80 °");
     }
 
     #[test]

@@ -347,6 +347,20 @@ mod tests {
     }
 
     #[test]
+    fn the_columns_of_wide_tables_are_narrower() {
+        struct Wide(usize);
+        impl fmt::Display for Wide {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                let columns = value_names(self.0);
+                write_table(f, "", &columns, &[("A".to_owned(), vec![Some(1.5); self.0])])
+            }
+        }
+        let longest = |columns| Wide(columns).to_string().lines().map(str::len).max();
+        assert_eq!([1, 5, 6, 10].map(longest), [32, 80, 80, 80].map(Some));
+        assert!(Wide(10).to_string().ends_with(&format!("{}\n", "   1.5".repeat(10))));
+    }
+
+    #[test]
     fn long_lines_are_wrapped_between_words() {
         struct Wrapped(String);
         impl fmt::Display for Wrapped {
@@ -364,5 +378,6 @@ mod tests {
         let text = "a \"quoted\" \\ path,\ta bell \u{7} and\nλ";
         let read: serde_json::Value = serde_json::from_str(&text_json(text)).expect("JSON");
         assert_eq!(read, text);
+        assert_eq!(text_json("\n\t"), r#""\n\u0009""#, "the usual short form");
     }
 }

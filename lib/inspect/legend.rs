@@ -79,12 +79,31 @@ mod tests {
     }
 
     #[test]
+    fn beside_each_color_stands_its_count() {
+        let result = with_legend(Framebuffer::new(640, 480));
+        let cell = SWATCH + GAP + label_width("6+") + GAP;
+        for (i, text) in ["0", "1", "2", "3", "4", "5", "6+"].into_iter().enumerate() {
+            let mut expected = Framebuffer::new(cell as u32, LABEL_HEIGHT as u32);
+            expected.clear(PAPER);
+            label(&mut expected, text, (GAP, 0), INK);
+            let left = GAP + i as i32 * cell + SWATCH;
+            for (x, y) in expected.rect().pixels().filter(|(x, _)| *x < cell - SWATCH) {
+                assert_eq!(result.get(left + x, GAP + y), expected.get(x, y), "{text} ({x}, {y})");
+            }
+        }
+    }
+
+    #[test]
     fn every_color_is_below_a_picture_of_any_width() {
         for (size, expected) in [
             ((640, 480), (640, 480 + 22)),
             ((160, 120), (160, 120 + 38)),
             ((100, 10), (100, 10 + 70)),
             ((1, 1), (44, 1 + 118)),
+            // Two cells of 38 and a gap, and one pixel less.
+            ((82, 1), (82, 1 + 70)),
+            ((81, 1), (81, 1 + 118)),
+            ((20, Framebuffer::MAX_SIDE - 118), (44, Framebuffer::MAX_SIDE)),
             ((20, Framebuffer::MAX_SIDE), (20, Framebuffer::MAX_SIDE)),
         ] {
             let mut picture = Framebuffer::new(size.0, size.1);
