@@ -53,10 +53,12 @@ impl Shader<5> for Busy {
             self.texture.nearest([u, v], self.mode)
         };
         let bright = (u * u + v * v).sqrt();
+        // Of 0 it is −∞: a zero has a sign.
+        let side = R::select((R::of(1.0) / -u).is_less(R::of(0.0)), R::of(8.0), R::of(0.0));
         let mixed = each(
             [r, g, b],
             #[inline(always)]
-            |k, channel| channel * R::of(0.25) + texel[k] * bright.min(R::of(0.75)),
+            |k, channel| channel * R::of(0.25) + texel[k] * bright.min(R::of(0.75)) + side,
         );
         Shaded::translucent(mixed, R::of(0.75)).discard(bright.is_less(R::of(0.1)))
     }

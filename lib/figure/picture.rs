@@ -233,6 +233,10 @@ mod tests {
         let reds = picture.rect().rows().flat_map(|y| (0..50).map(move |x| (x, y)));
         let reds: Vec<_> = reds.filter(|&(x, y)| picture.get(x, y) == Some(Color::RED)).collect();
         assert_eq!((reds.len(), reds[0], reds[35]), (36, (26, 21), (31, 26)));
+        // Where the height is what limits it, and the part does not begin at the border.
+        let flat = Rect { bottom: 3, top: 12, ..part };
+        let cells = draw_enlarged_within(&mut picture, flat, (4, 2), |_| {});
+        assert_eq!(cells, Fit::placed((24, 3), 4));
     }
 
     #[test]
@@ -260,6 +264,8 @@ mod tests {
         assert_eq!(marked.get(2, 2), Some(Color::rgb(255, 0, 255)));
         assert_eq!(marked.get(3, 0), Some(Color::rgb(255, 0, 255)));
         assert_eq!(marked.get(1, 1), Some(Color::gray(15)), "a quarter of the brightness of red");
+        let dimmed = [Color::RED, Color::GREEN, Color::BLUE, Color::WHITE].map(dim);
+        assert_eq!(dimmed, [15, 39, 7, 63].map(Color::gray), "green is the brightest, blue the darkest");
         assert!(difference(&dots(4, 4, &[]), &dots(4, 5, &[])).is_none());
     }
 
@@ -270,6 +276,11 @@ mod tests {
         assert_eq!(both.get(0, 2), Some(Color::RED), "aligned at the top");
         assert_eq!(both.get(3, 1), Some(GAP));
         assert_eq!(both.get(7, 0), Some(Color::RED));
-        assert!(side_by_side(&[dots(16_000, 1, &[]), dots(16_000, 1, &[])]).is_none());
+        let half = (Framebuffer::MAX_SIDE - GAP_WIDTH) / 2;
+        let wide = |width| side_by_side(&[dots(half, 1, &[]), dots(width, 1, &[])]);
+        assert_eq!(wide(half).expect("as wide as it may be").width(), Framebuffer::MAX_SIDE);
+        assert!(wide(half + 1).is_none());
+        let three = side_by_side(&[dots(2, 1, &[]), dots(2, 1, &[]), dots(2, 1, &[(1, 0)])]);
+        assert_eq!(three.map(|three| (three.width(), three.get(13, 0))), Some((14, Some(Color::RED))));
     }
 }

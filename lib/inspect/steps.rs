@@ -347,6 +347,9 @@ impl Steps {
 mod tests {
     use super::*;
     use crate::clip::{ClipTest, Plane, RecordedVertex};
+    use crate::figure::RasterizerChoice;
+    use crate::figure::picture::draw_enlarged;
+    use crate::inspect::tests::{by_itself, correct};
     use glam::dvec4;
 
     /// Each pixel of the left half three times, in rows.
@@ -375,6 +378,128 @@ mod tests {
             story.frames().iter().filter(|(_, outline)| outline.is_some()).count()
         };
         assert_eq!([1, MOST_OUTLINES / 2, MOST_OUTLINES / 2 + 1].map(shown), [2, MOST_OUTLINES, 0]);
+    }
+
+    /// The vertices of an outline, in order; `None` where a line is missing after one.
+    fn vertices(outline: &Outline) -> Vec<DVec2> {
+        let lines = &outline.lines;
+        for (i, [_, end]) in lines.iter().enumerate() {
+            assert_eq!(lines[(i + 1) % lines.len()][0], *end, "a closed line");
+        }
+        lines.iter().map(|[start, _]| *start).collect()
+    }
+
+    #[test]
+    fn an_outline_lies_where_its_triangle_is_drawn() {
+        let outlines = |variant: Variant, rasterizer| {
+            let options = DrawOptions { rasterizer, ..variant.options(None) };
+            let story = Steps::new(&variant, &options).expect("a small picture").story;
+            story.outlines.iter().map(|outline| (outline.after, vertices(outline))).collect::<Vec<_>>()
+        };
+        let pipeline = || Variant::with_pipeline("pipeline", correct, "").size(16, 16);
+        let program = Variant::new("by-itself", by_itself, "").size(16, 16);
+        // ABC and then DBCE: side · DB is cut off. Pixels of the book's rasterizer lie on whole coordinates, up to 15.
+        for (outlines, side, cut) in [
+            (outlines(pipeline(), RasterizerChoice::Scanline), 15.0, 0.25),
+            (outlines(pipeline(), RasterizerChoice::Exact), 16.0, 0.25),
+            (outlines(program, RasterizerChoice::Scanline), 16.0, 2.0 / 3.0),
+        ] {
+            let expected = [
+                vec![[0.0, 0.0], [side, 0.0], [0.0, side]],
+                vec![[cut * side, 0.0], [side, 0.0], [0.0, side], [0.0, cut * side]],
+            ];
+            assert_eq!(outlines.len(), 2, "of the only triangle that is cut and drawn: {outlines:?}");
+            for ((_, outline), expected) in outlines.iter().zip(expected) {
+                let is_near = |(a, b): (&DVec2, [f64; 2])| a.distance(b.into()) < 1e-3;
+                assert_eq!(outline.len(), expected.len());
+                assert!(outline.iter().zip(expected).all(is_near), "{outline:?}");
+            }
+            assert_eq!(outlines[0].0, outlines[1].0);
+        }
+    }
+
+    #[test]
+    fn only_what_is_cut_and_seen_has_an_outline() {
+        let outlines = |x: [f64; 3], w: [f64; 3], plane| {
+            let y = [0.0, 0.0, 1.0];
+            let vertex =
+                |i: usize| RecordedVertex { position: dvec4(x[i], y[i], 0.0, w[i]), varyings: vec![] };
+            let triangle = Assembled {
+                vertices: [vertex(0), vertex(1), vertex(2)],
+                model: None,
+                planes: vec![plane],
+                test: ClipTest::BeforeDivide,
+            };
+            let mut story = Story::default();
+            story.outline(&triangle, [DVec2::ZERO, DVec2::X, DVec2::ONE]);
+            story.outlines.iter().map(|outline| outline.lines.len()).collect::<Vec<_>>()
+        };
+        assert_eq!(outlines([0.0, 0.5, 0.0], [1.0; 3], Plane::RIGHT), [0; 0], "nothing is cut");
+        assert_eq!(outlines([2.0, 3.0, 2.0], [1.0; 3], Plane::RIGHT), [0; 0], "nothing is left");
+        assert_eq!(outlines([0.0, 2.0, 3.0], [1.0; 3], Plane::RIGHT), [3, 3], "a triangle is left");
+        // Of a vertex behind the eye no place is known: one side of three is left.
+        assert_eq!(outlines([0.0, 0.5, 0.0], [-1.0, 1.0, 1.0], Plane::in_front(0.5)), [1, 4]);
+    }
+
+    #[test]
+    fn an_outline_comes_after_what_was_drawn_before_it() {
+        let write = Write { at: [0, 0], color: [255, 0, 0], start: Start::Nothing };
+        let outlines = vec![Outline { after: 1, lines: vec![] }];
+        let story = Story { writes: vec![write; 2], outlines, ..Story::default() };
+        assert_eq!(story.frames(), [(1, None), (1, Some(0)), (2, None)]);
+        assert_eq!(Story::default().frames(), [], "nothing is written");
+    }
+
+    #[test]
+    fn many_primitives_are_shown_one_by_one() {
+        // Each of three pixels, in two rows; and a pixel that the program writes itself.
+        fn draw(picture: &mut Framebuffer) {
+            let scissor = picture.scissor();
+            for i in 0..70 {
+                let (from, to) = (DVec2::new(0.0, 0.5), DVec2::new(3.0, 1.5));
+                dda(from, to, StepAxis::Longer, scissor.clone(), |x, y| picture.set(x, y, Color::gray(i)));
+                picture.set(5, 5, Color::WHITE);
+            }
+        }
+        let variant = Variant::new("lines", draw, "").size(16, 16);
+        let steps = Steps::new(&variant, &variant.options(None)).expect("a small picture");
+        let ends: Vec<usize> = steps.frames.iter().map(|(end, _)| *end).collect();
+        assert_eq!((ends.len(), &ends[..4]), (140, &[3, 4, 7, 8][..]));
+    }
+
+    #[test]
+    fn an_enlarged_screen_is_replayed_in_blocks() {
+        fn draw(picture: &mut Framebuffer) {
+            picture.clear(Color::BLUE);
+            draw_enlarged(picture, (4, 4), |screen| {
+                screen.clear(Color::RED);
+                screen.set(1, 2, Color::WHITE);
+            });
+            picture.set(0, 0, Color::GREEN);
+        }
+        let variant = Variant::new("enlarged", draw, "").size(16, 16);
+        let steps = Steps::new(&variant, &variant.options(None)).expect("a small picture");
+        assert_eq!(
+            steps.frames,
+            [(1, None), (2, None), (3, None)],
+            "to clear the screen of its own is no step"
+        );
+        let seen = |frame: u32| [(0, 0), (4, 8), (7, 11), (8, 8)].map(|(x, y)| steps.frame(frame).get(x, y));
+        assert_eq!(seen(0), [Some(Color::BLUE); 4]);
+        assert_eq!(seen(1), [Color::BLUE, Color::WHITE, Color::WHITE, Color::BLUE].map(Some));
+        assert_eq!(seen(2), [Color::GREEN, Color::WHITE, Color::WHITE, Color::BLUE].map(Some));
+    }
+
+    #[test]
+    fn the_last_write_that_fits_is_kept() {
+        fn draw(picture: &mut Framebuffer) {
+            (0..60).for_each(|i| picture.set(i % 5, i / 25, Color::gray(i as u8)));
+        }
+        let variant = Variant::new("sixty", draw, "").size(5, 5);
+        let within = |most| Steps::within(most, &variant, &variant.options(None));
+        let steps = within(60).expect("it fits");
+        assert_eq!(steps.animation(), Animation { frames: 60 + 6, rate: 6 });
+        assert!(within(59).is_err());
     }
 
     #[test]

@@ -10,7 +10,7 @@ use crate::exact::samples::{ROTATED_4, Samples};
 use crate::figure::picture::draw_enlarged;
 use crate::figure::{Canvas, DrawOptions, RasterizerChoice, Variant};
 use crate::framebuffer::Framebuffer;
-use crate::interpolate::{Interpolation, Projected, ScreenVertex, step_values};
+use crate::interpolate::{Interpolation, Projected, ScreenVertex, step_parameter, step_values};
 use crate::line::{StepAxis, dda};
 use crate::mesh::Mesh;
 use crate::payload::Walk;
@@ -76,7 +76,7 @@ fn pipeline(canvas: &mut Canvas, interpolation: Interpolation) {
     canvas.draw(&mesh, &Values, &state);
 }
 
-fn correct(canvas: &mut Canvas) {
+pub(super) fn correct(canvas: &mut Canvas) {
     pipeline(canvas, Interpolation::PerspectiveCorrect);
 }
 
@@ -95,7 +95,7 @@ fn early(picture: &mut Framebuffer) {
     let scissor = picture.scissor();
     for (from, to) in [((0.0, 2.5), (9.0, 7.0)), ((4.0, 12.0), (2.0, 1.0)), ((0.0, 5.0), (9.0, 0.0))] {
         dda(from.into(), to.into(), StepAxis::Longer, scissor.clone(), |x, y| {
-            picture.set(x, y, Color::GREEN)
+            picture.set(x, y, Color::GREEN);
         });
     }
     let triangle = [dvec2(1.0, 1.0), dvec2(9.0, 4.0), dvec2(2.0, 12.0)];
@@ -114,7 +114,7 @@ fn early(picture: &mut Framebuffer) {
         screen.clear(Color::BLACK);
         let scissor = screen.scissor();
         dda(dvec2(0.0, 0.0), dvec2(3.0, 3.0), StepAxis::Longer, scissor, |x, y| {
-            screen.set(x, y, Color::WHITE)
+            screen.set(x, y, Color::WHITE);
         });
     });
 }
@@ -125,14 +125,29 @@ fn of_pipeline(draw: fn(&mut Canvas), rasterizer: RasterizerChoice, pixel: Pixel
     history("ch00", &variant, &options, pixel)
 }
 
-/// Samples of a pixel, and a triangle that a program clips by itself, as chapter 7 does: x and y are its places.
-fn by_itself(picture: &mut Framebuffer) {
+/// A spike, a triangle of chapter 5, samples of a pixel, and a triangle that a program clips by itself, as chapter 7 does.
+pub(super) fn by_itself(picture: &mut Framebuffer) {
+    // The nearly horizontal edge leads 40 pixels to the right in its second row.
+    let flat = [dvec2(1.0, 10.9), dvec2(9.0, 11.1), dvec2(2.0, 14.0)];
+    spans(flat, EdgeWalk::Unclamped, picture.scissor(), |span| {
+        span.columns().for_each(|x| picture.set(x, span.y, Color::RED));
+    });
+    let corners = [(1.0, 1.0, 1.0), (13.0, 1.0, 2.0), (1.0, 9.0, 4.0)];
+    let projected = corners.map(|(x, y, w)| {
+        let varyings = Projected { w, values: [x * 10.0] };
+        ScreenVertex { position: dvec2(x, y), varyings }
+    });
+    let (way, walk) = (Interpolation::PerspectiveCorrect, Walk::default());
+    step_parameter(projected, way, walk, picture.scissor(), |x, y, point| {
+        picture.set(x, y, Color::truncated([point.values[0], 0.0, 0.0]));
+    });
     let mut samples = Samples::like(picture, &ROTATED_4);
     for (sample, depth, color) in [(0, 0.5, Color::RED), (3, 0.5, Color::GREEN), (0, 0.75, Color::BLUE)] {
         samples.draw(3, 4, sample, depth, color);
     }
     picture.set(3, 4, samples.resolved().get(3, 4).unwrap_or_default());
 
+    // x and y of the clip space, divided by ω, are places in the picture.
     let vertex = |x, y, w| ClipVertex { position: dvec4(x, y, 0.5, 1.0) * w, varyings: [x] };
     let triangle = [vertex(0.0, 0.0, 1.0), vertex(16.0, 0.0, 4.0), vertex(0.0, 16.0, 4.0)];
     let mut target = Target::like(picture);
@@ -169,8 +184,9 @@ fn lines_halves_and_stepped_values() {
 }
 
 #[test]
-fn samples_and_pieces_of_a_program() {
+fn what_a_program_does_by_itself() {
     pin("samples", &of_framebuffer(by_itself, (3, 4)).to_string());
+    pin("spike", &of_framebuffer(by_itself, (14, 11)).to_string());
     pin("pieces", &of_framebuffer(by_itself, (6, 8)).to_string());
 }
 

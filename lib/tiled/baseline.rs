@@ -4,7 +4,7 @@ use bytemuck::cast;
 use wide::{CmpEq, CmpLe, CmpLt, f32x8, f64x4, i16x8, i32x8};
 
 use super::instruction_set::{Four, InstructionSet};
-use super::lanes::{ALL, Block, LANES, LaneMask, Lanes, is_less_or_equal, packed};
+use super::lanes::{ALL, Block, LANES, LaneMask, Lanes, each_lane, is_less_or_equal, packed};
 
 /// What the whole program is compiled for.
 #[derive(Clone, Copy, Debug)]
@@ -37,12 +37,13 @@ impl InstructionSet for Baseline {
 
     #[inline(always)]
     fn transposed(self, rows: &[Block; LANES]) -> [Lanes; LANES] {
-        f32x8::transpose(rows.map(|row| Lanes::new(row.0)))
+        let columns = f32x8::transpose(each_lane(|row| f32x8::new(rows[row].0)));
+        each_lane(|column| Lanes(columns[column]))
     }
 
     #[inline(always)]
     fn signs(self, [a, b, c]: [Lanes; 3]) -> u8 {
-        (a | b | c).move_mask() as u8
+        (a.0 | b.0 | c.0).move_mask() as u8
     }
 
     #[inline(always)]
@@ -89,9 +90,9 @@ impl InstructionSet for Baseline {
     fn lowest_bits(self, bytes: u64) -> ([i32; LANES], Lanes) {
         let bytes = i16x8::from_u8x16_low(cast([bytes.to_le(), 0]));
         // The exponent of a power of two is the number of its bit.
-        let lowest: Lanes = i32x8::from_i16x8(bytes & -bytes).round_float();
-        let numbers: i32x8 = (cast::<Lanes, i32x8>(lowest) >> 23) - i32x8::splat(127);
-        (numbers.to_array(), numbers.round_float())
+        let lowest = i32x8::from_i16x8(bytes & -bytes).round_float();
+        let numbers: i32x8 = (cast::<f32x8, i32x8>(lowest) >> 23) - i32x8::splat(127);
+        (numbers.to_array(), Lanes(numbers.round_float()))
     }
 
     #[inline(always)]

@@ -15,6 +15,7 @@
 //! ```
 
 use std::array::from_fn;
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use bytemuck::cast;
 use wide::{CmpEq, CmpGt, CmpLe, CmpLt, f32x8, i32x8};
@@ -26,7 +27,64 @@ use crate::real::{Mask, Real, sealed};
 pub const LANES: usize = 8;
 
 /// Eight numbers of single precision.
-pub type Lanes = f32x8;
+///
+/// A type of our own around that of the crate `wide`, whose −x is 0 − x: of 0 that makes 0, and not −0 as of one number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(transparent)]
+pub struct Lanes(pub(super) f32x8);
+
+impl Lanes {
+    /// A number for each lane.
+    #[must_use]
+    #[inline(always)]
+    pub const fn new(numbers: [f32; LANES]) -> Self {
+        Self(f32x8::new(numbers))
+    }
+
+    /// The same number in all lanes.
+    #[must_use]
+    #[inline(always)]
+    pub fn splat(number: f32) -> Self {
+        Self(f32x8::splat(number))
+    }
+
+    /// The numbers of the lanes.
+    #[must_use]
+    #[inline(always)]
+    pub fn to_array(self) -> [f32; LANES] {
+        self.0.to_array()
+    }
+}
+
+impl From<f32> for Lanes {
+    #[inline(always)]
+    fn from(number: f32) -> Self {
+        Self::splat(number)
+    }
+}
+
+macro_rules! operators {
+    ($($operator:ident $function:ident),*) => {$(
+        impl $operator for Lanes {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $function(self, other: Self) -> Self {
+                Self($operator::$function(self.0, other.0))
+            }
+        }
+    )*};
+}
+operators!(Add add, Sub sub, Mul mul, Div div);
+
+impl Neg for Lanes {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self(self.0 ^ f32x8::splat(-0.0))
+    }
+}
 
 /// What a function gives for each lane. (`from_fn` and `map` of the standard library need not be inlined.)
 #[inline(always)]
@@ -94,12 +152,12 @@ impl LaneMask {
 /// Comparisons of eight depths.
 #[inline]
 pub(crate) fn is_less_or_equal(a: Lanes, b: Lanes) -> LaneMask {
-    LaneMask(a.cmp_le(b))
+    LaneMask(a.0.cmp_le(b.0))
 }
 
-impl sealed::Sealed for f32x8 {}
+impl sealed::Sealed for Lanes {}
 
-impl Real for f32x8 {
+impl Real for Lanes {
     type Mask = LaneMask;
     /// Words 0x00RRGGBB.
     type Colors = i32x8;
@@ -113,18 +171,18 @@ impl Real for f32x8 {
     fn min(self, other: Self) -> Self {
         // Others disagree on NaN and on zeros of two signs; the instruction of x86 is this very comparison.
         if cfg!(target_feature = "sse") {
-            self.fast_min(other)
+            Self(self.0.fast_min(other.0))
         } else {
-            self.cmp_lt(other).blend(self, other)
+            Self(self.0.cmp_lt(other.0).blend(self.0, other.0))
         }
     }
 
     #[inline]
     fn max(self, other: Self) -> Self {
         if cfg!(target_feature = "sse") {
-            self.fast_max(other)
+            Self(self.0.fast_max(other.0))
         } else {
-            self.cmp_gt(other).blend(self, other)
+            Self(self.0.cmp_gt(other.0).blend(self.0, other.0))
         }
     }
 
@@ -136,28 +194,29 @@ impl Real for f32x8 {
             all(target_feature = "neon", target_arch = "aarch64"),
         ));
         if HAS_INSTRUCTION {
-            return Self::floor(self);
+            return Self(self.0.floor());
         }
         // Old instruction sets cannot round down: cut off, and take one away where that went up. Negative zero, which has
         // lost its sign, gets it back. From 2²³ on there are no fractions, and whole numbers need not fit.
-        let cut = self.fast_trunc_int().round_float();
-        let floor = (cut - (cut.cmp_gt(self) & Self::ONE)) | (self & Self::splat(-0.0));
-        self.abs().cmp_lt(Self::splat(8_388_608.0)).blend(floor, self)
+        let number = self.0;
+        let cut = number.fast_trunc_int().round_float();
+        let floor = (cut - (cut.cmp_gt(number) & f32x8::ONE)) | (number & f32x8::splat(-0.0));
+        Self(number.abs().cmp_lt(f32x8::splat(8_388_608.0)).blend(floor, number))
     }
 
     #[inline]
     fn sqrt(self) -> Self {
-        Self::sqrt(self)
+        Self(self.0.sqrt())
     }
 
     #[inline]
     fn is_less(self, other: Self) -> LaneMask {
-        LaneMask(self.cmp_lt(other))
+        LaneMask(self.0.cmp_lt(other.0))
     }
 
     #[inline]
     fn select(mask: LaneMask, yes: Self, no: Self) -> Self {
-        mask.0.blend(yes, no)
+        Self(mask.0.blend(yes.0, no.0))
     }
 
     #[inline]
@@ -190,7 +249,7 @@ impl Real for f32x8 {
 
     #[inline]
     fn gather_color(column: Self, row: Self, row_bits: u32, colors: &[Color]) -> i32x8 {
-        let indices = (row.fast_trunc_int() << row_bits) + column.fast_trunc_int();
+        let indices = (row.0.fast_trunc_int() << row_bits) + column.0.fast_trunc_int();
         // Two by two: half as many numbers leave the register, which keeps those parts of the processor busy that the
         // arithmetic needs.
         let pairs: [u64; LANES / 2] = cast(indices);
@@ -205,17 +264,17 @@ impl Real for f32x8 {
     #[inline]
     fn channels(words: i32x8) -> [Self; 3] {
         let byte = i32x8::splat(0xFF);
-        [(words >> 16) & byte, (words >> 8) & byte, words & byte].map(i32x8::round_float)
+        [(words >> 16) & byte, (words >> 8) & byte, words & byte].map(|channel| Self(channel.round_float()))
     }
 }
 
 /// The words of eight colors, channels rounded to the nearest of 0..=255; NaN gives 0.
 #[inline]
 pub(crate) fn packed(color: [Lanes; 3]) -> i32x8 {
-    let (zero, half, most) = (f32x8::splat(0.0), f32x8::splat(0.5), f32x8::splat(255.0));
+    let (zero, half, most) = (Lanes::splat(0.0), Lanes::splat(0.5), Lanes::splat(255.0));
     let [red, green, blue] = color.map(|channel| {
         let limited = Real::min(Real::max(channel + half, zero), most);
-        limited.fast_trunc_int()
+        limited.0.fast_trunc_int()
     });
     (red << 16) | (green << 8) | blue
 }
@@ -251,7 +310,7 @@ mod tests {
         check(a - b, |a, b| a - b);
         check(a * b, |a, b| a * b);
         check(a / b, |a, b| a / b);
-        // (`wide` subtracts from 0, which makes 0 of 0 and not −0.)
+        check(-a, |a, _| -a);
         check(-(a - I::Lanes::of(0.25)), |a, _| -(a - 0.25));
         check(Real::min(a, b), Real::min);
         check(Real::max(a, b), Real::max);
@@ -281,7 +340,7 @@ mod tests {
             };
             check_same(same - b, |a, b| a - b);
             check_same(I::Lanes::of(0.25) - same, |a, _| 0.25 - a);
-            check_same(-(same - I::Lanes::of(0.25)), |a, _| -(a - 0.25));
+            check_same(-same, |a, _| -a);
             check_same(b - same, |a, b| b - a);
             check_same(same / b, |a, b| a / b);
             check_same(Real::min(same, b), Real::min);
