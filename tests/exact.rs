@@ -362,7 +362,8 @@ fn difference_on_far_edges(ratio: f64) -> u8 {
 #[test]
 fn colors_of_both_precisions_differ_by_one_up_to_ten_thousand_times_the_distance() {
     assert!(difference_on_far_edges(1e4) <= 1);
-    assert!(difference_on_far_edges(1e6) > 1, "far beyond that single precision shows");
+    let far_beyond = difference_on_far_edges(1e6);
+    assert!((2..=30).contains(&far_beyond), "single precision shows: {far_beyond}");
 }
 
 fn picture<Z: Rasterizer>(mesh: &Mesh<(DVec4, [f64; 3])>, rasterizer: &Z) -> Target<Z::Depth> {

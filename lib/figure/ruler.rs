@@ -44,7 +44,7 @@ pub(super) fn ruler(part: Rect, factor: u32) -> (Framebuffer, Pixel) {
         frame.fill(Rect { left: left - tick(y), bottom: first, right: left, top: first + TICK_WIDTH }, INK);
         if y % step == 0 {
             let (text, from) = (y.to_string(), at - LABEL_HEIGHT / 2);
-            let place = (left - TICK - GAP - label_width(&text), from.min(top - LABEL_HEIGHT));
+            let place = (left - TICK - GAP - label_width(&text), from);
             label(&mut frame, &text, place, INK);
         }
     }
@@ -107,11 +107,22 @@ mod tests {
     }
 
     #[test]
+    fn there_is_room_for_the_longest_number_that_is_shown() {
+        let (_, (left, _)) = ruler(Rect { left: 0, bottom: 98, right: 2, top: 102 }, 10);
+        assert_eq!(left, GAP + label_width("100") + GAP + TICK, "of rows 98 to 101 only 100 has a number");
+    }
+
+    #[test]
     fn small_pictures_have_room_for_their_numbers() {
         let (frame, (left, _)) = ruler(Rect { left: 9_999, bottom: 0, right: 10_001, top: 1 }, 2);
         let top_of_label = GAP + LABEL_HEIGHT - 1;
         let ink = inked(&frame, (0..frame.width() as i32).map(|x| (x, top_of_label)));
         let right = frame.width() as usize;
         assert_eq!(ink.last().map(|last| right - last), Some(1), "{left}: {ink:?}");
+        // The number of the only row, above that of the column, touches the upper border, and is not cut.
+        let (below, top) = (GAP + LABEL_HEIGHT, frame.height() as i32);
+        let rows = (0..6).flat_map(|x| inked(&frame, (below..top).map(|y| (GAP + x, y))));
+        let rows: Vec<i32> = rows.map(|row| top - below - row as i32).collect();
+        assert_eq!((rows.iter().max(), rows.iter().min()), (Some(&LABEL_HEIGHT), Some(&1)));
     }
 }

@@ -143,6 +143,12 @@ mod tests {
         let dot = drawn([12.0, 8.0], |sketch| sketch.dot(dvec2(6.0, 4.0), 2.0, Color::WHITE));
         let expected = [".....##.....", "....####....", "....####....", ".....##....."];
         assert_eq!(dot[2..6], expected);
+        let half = drawn([24.0, 16.0], |sketch| sketch.dot(dvec2(12.0, 8.0), 4.0, Color::WHITE));
+        assert_eq!(half, dot, "the scene's radius");
+        // From 4.3 to 8.7, and from 2.3 to 6.7: its last column and row, too.
+        let dot = drawn([12.0, 8.0], |sketch| sketch.dot(dvec2(6.5, 4.5), 2.2, Color::WHITE));
+        let expected = ["......#.....", ".....###....", "....#####...", ".....###....", "......#....."];
+        assert_eq!(dot[1..6], expected);
 
         let bar = drawn([24.0, 16.0], |sketch| sketch.bar(dvec2(2.0, 2.0), dvec2(8.0, 4.0), Color::WHITE));
         assert_eq!((bar[5].as_str(), bar[6].as_str()), ("............", ".###........"));

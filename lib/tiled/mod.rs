@@ -132,7 +132,8 @@ impl Tiled {
     /// many ways to write it, and a stored depth may be another one of them).
     ///
     /// # Panics
-    /// If a pixel of the target has no depth: its plane of depths is smaller than that of colors.
+    /// If a pixel of the target has no depth: its plane of depths is smaller than that of colors. And where no thread can be
+    /// started, as [`rayon::scope`] does: who has to draw there anyway makes a pool of the calling thread.
     pub fn draw_mesh<S: Shader<N>, const N: usize>(
         &self,
         mesh: &Mesh<S::Attributes>,
