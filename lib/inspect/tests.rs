@@ -207,6 +207,14 @@ fn edge_functions_and_weights() {
 }
 
 #[test]
+fn misses_can_be_left_out() {
+    let whole = of_framebuffer(early, (3, 4)).to_string();
+    let (before, _) = whole.split_once("\nWhat did not reach this pixel").expect("there are some");
+    let without = of_framebuffer(early, (3, 4)).without_misses().to_string();
+    assert_eq!(without, format!("{before}\nIn the picture: (0, 0, 0)"));
+}
+
+#[test]
 fn the_same_as_json() {
     pin("early-json", &of_framebuffer(early, (3, 4)).to_json());
     pin("scanline-json", &of_pipeline(correct, RasterizerChoice::Scanline, (3, 3)).to_json());
