@@ -8,7 +8,7 @@ use glam::{DVec4, dvec4};
 use proptest::prelude::*;
 use rasterbook::depth::{DepthBuffer, DepthTest};
 use rasterbook::exact::Exact;
-use rasterbook::tiled::Tiled;
+use rasterbook::tiled::{Instructions, Tiled};
 use rasterbook::transform::Viewport;
 use rasterbook::{
     ClipVertex, Color, Framebuffer, LoadOp, Mesh, Real, RenderState, Shaded, Shader, Silent, Target, draw,
@@ -23,14 +23,21 @@ struct Flat;
 
 impl Shader<0> for Flat {
     type Attributes = DVec4;
+    const IS_INLINED: bool = true;
 
     fn vertex(&self, position: &DVec4) -> ClipVertex<0> {
         ClipVertex { position: *position, varyings: [] }
     }
 
+    #[inline(always)]
     fn fragment<R: Real>(&self, _: [R; 0]) -> Shaded<R> {
-        Shaded::opaque([200.0, 100.0, 50.0].map(R::of))
+        Shaded::opaque([R::of(200.0), R::of(100.0), R::of(50.0)])
     }
+}
+
+/// A rasterizer for each set of instructions that this processor has.
+fn rasterizers() -> impl Iterator<Item = Tiled> {
+    Instructions::available().map(|instructions| Tiled::new().with_instructions(instructions))
 }
 
 /// What can happen to a picture.
@@ -126,13 +133,14 @@ enum Turn {
 proptest! {
     #[test]
     fn pictures_one_after_the_other(size in size(), steps in prop::collection::vec(step(), 1..12)) {
-        let tiled = Tiled::new();
-        let mut targets = [0, 1].map(|_| Target::<f32>::sized(size.0, size.1));
-        for step in &steps {
-            let [by_tiles, by_pixels] = &mut targets;
-            step.happen(by_tiles, Some(&tiled));
-            step.happen(by_pixels, None);
-            assert_same(by_tiles, by_pixels);
+        for tiled in rasterizers() {
+            let mut targets = [0, 1].map(|_| Target::<f32>::sized(size.0, size.1));
+            for step in &steps {
+                let [by_tiles, by_pixels] = &mut targets;
+                step.happen(by_tiles, Some(&tiled));
+                step.happen(by_pixels, None);
+                assert_same(by_tiles, by_pixels);
+            }
         }
     }
 
@@ -141,23 +149,24 @@ proptest! {
         (step(), prop_oneof![Just(Turn::Stay), Just(Turn::Other), Just(Turn::Copy), Just(Turn::Swap)]), 1..12,
     )) {
         // What is known of a picture stays with it, and its copy knows nothing false.
-        let tiled = Tiled::new();
-        let pair = [0, 1].map(|_| Target::<f32>::sized(size.0, size.1));
-        let [mut here, mut there] = [pair.clone(), pair];
-        for (step, turn) in &steps {
-            match turn {
-                Turn::Stay => {}
-                Turn::Other => std::mem::swap(&mut here, &mut there),
-                Turn::Copy => there = here.clone(),
-                Turn::Swap => {
-                    let pairs = here.iter_mut().zip(&mut there);
-                    pairs.for_each(|(here, there)| std::mem::swap(&mut here.color, &mut there.color));
+        for tiled in rasterizers() {
+            let pair = [0, 1].map(|_| Target::<f32>::sized(size.0, size.1));
+            let [mut here, mut there] = [pair.clone(), pair];
+            for (step, turn) in &steps {
+                match turn {
+                    Turn::Stay => {}
+                    Turn::Other => std::mem::swap(&mut here, &mut there),
+                    Turn::Copy => there = here.clone(),
+                    Turn::Swap => {
+                        let pairs = here.iter_mut().zip(&mut there);
+                        pairs.for_each(|(here, there)| std::mem::swap(&mut here.color, &mut there.color));
+                    }
                 }
+                let [by_tiles, by_pixels] = &mut here;
+                step.happen(by_tiles, Some(&tiled));
+                step.happen(by_pixels, None);
+                assert_same(by_tiles, by_pixels);
             }
-            let [by_tiles, by_pixels] = &mut here;
-            step.happen(by_tiles, Some(&tiled));
-            step.happen(by_pixels, None);
-            assert_same(by_tiles, by_pixels);
         }
     }
 }
@@ -170,31 +179,33 @@ fn half(depth: f64, size: f64, load: LoadOp) -> Step {
 
 #[test]
 fn one_depth_buffer_for_pictures_of_two_sizes() {
-    let tiled = Tiled::new();
-    let mut pictures = [(64, 64), (256, 128)].map(|(width, height)| Framebuffer::new(width, height));
-    let mut depth = DepthBuffer::new(256, 128);
-    // In the second tile of both pictures nothing is drawn at first. But that of the small one has depths that belong to
-    // the first tile of the large one.
-    for (which, size) in [(0, 0.2), (1, 0.45), (0, 2.0)] {
-        let mut target = Target { color: pictures[which].clone(), depth };
-        let mut alone = Target::sized(target.color.width(), target.color.height());
-        // Near in the large picture, far in the small one: what it leaves would hide the other.
-        let step = half(if which == 1 { -0.9 } else { 0.9 }, size, LoadOp::Clear);
-        step.happen(&mut target, Some(&tiled));
-        step.happen(&mut alone, Some(&tiled));
-        assert!(target.color == alone.color, "picture {which}, {size}");
-        (pictures[which], depth) = (target.color, target.depth);
+    for tiled in rasterizers() {
+        let mut pictures = [(64, 64), (256, 128)].map(|(width, height)| Framebuffer::new(width, height));
+        let mut depth = DepthBuffer::new(256, 128);
+        // In the second tile of both pictures nothing is drawn at first. But that of the small one has depths that belong to
+        // the first tile of the large one.
+        for (which, size) in [(0, 0.2), (1, 0.45), (0, 2.0)] {
+            let mut target = Target { color: pictures[which].clone(), depth };
+            let mut alone = Target::sized(target.color.width(), target.color.height());
+            // Near in the large picture, far in the small one: what it leaves would hide the other.
+            let step = half(if which == 1 { -0.9 } else { 0.9 }, size, LoadOp::Clear);
+            step.happen(&mut target, Some(&tiled));
+            step.happen(&mut alone, Some(&tiled));
+            assert!(target.color == alone.color, "picture {which}, {size}");
+            (pictures[which], depth) = (target.color, target.depth);
+        }
     }
 }
 
 #[test]
 fn a_smaller_picture_on_the_same_depths() {
-    let tiled = Tiled::new();
-    let [mut by_tiles, mut by_pixels] = [0, 1].map(|_| Target::<f32>::sized(64, 64));
-    half(0.5, 0.5, LoadOp::Clear).happen(&mut by_tiles, Some(&tiled));
-    half(0.5, 0.5, LoadOp::Clear).happen(&mut by_pixels, None);
-    (by_tiles.color, by_pixels.color) = (Framebuffer::new(64, 32), Framebuffer::new(64, 32));
-    half(0.2, 1.5, LoadOp::Load).happen(&mut by_tiles, Some(&tiled));
-    half(0.2, 1.5, LoadOp::Load).happen(&mut by_pixels, None);
-    assert_same(&by_tiles, &by_pixels);
+    for tiled in rasterizers() {
+        let [mut by_tiles, mut by_pixels] = [0, 1].map(|_| Target::<f32>::sized(64, 64));
+        half(0.5, 0.5, LoadOp::Clear).happen(&mut by_tiles, Some(&tiled));
+        half(0.5, 0.5, LoadOp::Clear).happen(&mut by_pixels, None);
+        (by_tiles.color, by_pixels.color) = (Framebuffer::new(64, 32), Framebuffer::new(64, 32));
+        half(0.2, 1.5, LoadOp::Load).happen(&mut by_tiles, Some(&tiled));
+        half(0.2, 1.5, LoadOp::Load).happen(&mut by_pixels, None);
+        assert_same(&by_tiles, &by_pixels);
+    }
 }

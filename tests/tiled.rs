@@ -374,15 +374,18 @@ fn a_crowd_of_triangles() {
 fn threads_do_not_matter() {
     let mesh = crowd(20_000, 3);
     let (shader, size) = (busy(AddressMode::Mirror, true), (257, 190));
-    let state = RenderState {
-        merge: Merge { blend: Blend::SourceOver, ..Merge::default() },
-        ..RenderState::default()
-    };
-    let exact = draw_with(&mesh, &shader, &state, None, size);
-    for threads in [1, 2, 3, 8] {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-        let tiled = pool.install(|| draw_with(&mesh, &shader, &state, Some(&Tiled::new()), size));
-        assert_same(&tiled, &exact);
+    // What blends is drawn by the baseline, whatever is asked for.
+    let plain = RenderState::default();
+    let blended = RenderState { merge: Merge { blend: Blend::SourceOver, ..Merge::default() }, ..plain };
+    for state in [plain, blended] {
+        let exact = draw_with(&mesh, &shader, &state, None, size);
+        for instructions in Instructions::available() {
+            for threads in [1, 2, 3, 8] {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+                let tiled = Tiled::new().with_instructions(instructions);
+                assert_same(&pool.install(|| draw_with(&mesh, &shader, &state, Some(&tiled), size)), &exact);
+            }
+        }
     }
 }
 
@@ -630,7 +633,10 @@ fn layers_with_holes_on_what_was_there() {
             }
             target
         };
-        assert_same(&both(Some(&Tiled::new())), &both(None));
+        let exact = both(None);
+        for instructions in Instructions::available() {
+            assert_same(&both(Some(&Tiled::new().with_instructions(instructions))), &exact);
+        }
     }
 }
 
@@ -686,18 +692,21 @@ fn a_small_triangle_with_a_hole_in_a_tile_of_one_pixel_hides_nothing() {
 
 #[test]
 fn what_is_hidden_in_all_of_a_tile_is_not_shaded() {
-    let count = |depths: &[f64]| {
-        let shader = Counted::default();
-        let state = RenderState { load: LoadOp::Clear, ..RenderState::default() };
-        let mesh = layers(depths, || 0.0);
-        draw_with(&mesh, &shader, &state, Some(&Tiled::new()), (1280, 320));
-        shader.asked.into_inner()
-    };
-    let one = count(&[0.0]);
     let eight: Vec<f64> = (0..8).map(|i| 0.8 - 0.1 * f64::from(i)).collect();
     let backwards: Vec<f64> = eight.iter().rev().copied().collect();
-    assert!(one >= 1280 * 320 / 8);
-    // Along the diagonal no triangle covers a tile alone.
-    assert!(count(&eight) < 3 * one, "the farthest first");
-    assert!(count(&backwards) < 3 * one, "the nearest first");
+    for instructions in Instructions::available() {
+        let count = |depths: &[f64]| {
+            let shader = Counted::default();
+            let state = RenderState { load: LoadOp::Clear, ..RenderState::default() };
+            let mesh = layers(depths, || 0.0);
+            let tiled = Tiled::new().with_instructions(instructions);
+            draw_with(&mesh, &shader, &state, Some(&tiled), (1280, 320));
+            shader.asked.into_inner()
+        };
+        let one = count(&[0.0]);
+        assert!(one >= 1280 * 320 / 8);
+        // Along the diagonal no triangle covers a tile alone.
+        assert!(count(&eight) < 3 * one, "the farthest first, {instructions}");
+        assert!(count(&backwards) < 3 * one, "the nearest first, {instructions}");
+    }
 }

@@ -1,7 +1,9 @@
 //! Our rasterizers, ready to be measured. Another one is a line in [`RASTERIZERS`].
 
+use std::array::from_fn;
+
 use arrayvec::ArrayVec;
-use glam::{DMat4, DVec4, Vec3};
+use glam::{DMat4, DVec4, Vec3, dvec4};
 use rasterbook::clip::{MAX_VERTICES, NdcVertex, clip_triangle, fan};
 use rasterbook::cull::CullMode;
 use rasterbook::exact::Exact;
@@ -11,6 +13,7 @@ use rasterbook::raster::Rasterizer;
 use rasterbook::real::{Mask, Scalar};
 use rasterbook::texture::{AddressMode, Texture};
 use rasterbook::tiled::{Instructions, Tiled};
+use rasterbook::transform::Viewport;
 use rasterbook::{
     ClipVertex, Color, LoadOp, Mesh, Real, RenderState, Scanline, Shaded, Shader, Silent, Target, draw,
 };
@@ -287,6 +290,9 @@ pub(crate) enum Stage {
     Raster,
     /// That, and what is done for each of them: interpolation, shading, the depth test, writing.
     Shade,
+    /// What is done for each pixel, where memory has no part in it: as many as the picture has, all seen, in one tile that
+    /// stays in the cache.
+    Kernel,
     /// All of it.
     Frame,
 }
@@ -304,11 +310,22 @@ struct Staged<Z: Rasterizer, S, const N: usize> {
     pieces: Vec<[NdcVertex<N>; 3]>,
     /// One pixel, the lower left one of the view.
     dot: Target<Z::Depth>,
+    /// As large as a tile of `tiled`.
+    tile: Target<Z::Depth>,
+    /// Triangles each of which covers that, in a view twice as large.
+    covers: Vec<[NdcVertex<N>; 3]>,
 }
+
+/// The size of `tile`.
+const TILE: [u32; 2] = [128, 32];
 
 impl<Z: Contestant, S: Shader<N, Attributes = Vertex> + Sync, const N: usize> Staged<Z, S, N> {
     fn new(prepared: Prepared<Z, S, N>) -> Self {
-        let mut staged = Self { prepared, shaded: vec![], pieces: vec![], dot: Target::sized(1, 1) };
+        let pixels = prepared.target.color.rect().pixels().count();
+        let covers = vec![cover(); pixels.div_ceil((TILE[0] * TILE[1]) as usize)];
+        let [dot, mut tile] = [[1, 1], TILE].map(|[width, height]| Target::sized(width, height));
+        clear(&mut tile, &prepared.state);
+        let mut staged = Self { prepared, shaded: vec![], pieces: vec![], dot, tile, covers };
         staged.run(Stage::Vertex);
         staged.run(Stage::Clip);
         staged
@@ -326,6 +343,16 @@ impl<Z: Contestant, S: Shader<N, Attributes = Vertex> + Sync, const N: usize> St
             fan(divided)
         }));
     }
+}
+
+/// Half of a view, cut along its diagonal, which covers the lower left quarter as a whole. Of a texture it shows about a texel
+/// for each pixel of `TILE` there.
+fn cover<const N: usize>() -> [NdcVertex<N>; 3] {
+    [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0)].map(|(x, y)| {
+        let uv = [(x + 1.0) / 4.0, (y + 1.0) / 16.0];
+        let varyings = from_fn(|k| uv.get(k).copied().unwrap_or(0.5));
+        NdcVertex::from(ClipVertex { position: dvec4(x, y, 0.0, 1.0), varyings })
+    })
 }
 
 fn stages<Z: Contestant>(scene: Scene) -> Box<dyn Stages + Send>
@@ -359,6 +386,13 @@ impl<Z: Contestant, S: Shader<N, Attributes = Vertex> + Sync, const N: usize> St
             Stage::Shade => {
                 clear(target, state);
                 rasterizer.draw(pieces, state, shader, target, &Silent);
+            }
+            Stage::Kernel => {
+                let covers = self.covers.iter().copied();
+                let [width, height] = TILE.map(|side| 2.0 * f64::from(side));
+                let state =
+                    RenderState { viewport: Some(Viewport { x: 0.0, y: 0.0, width, height }), ..*state };
+                rasterizer.draw(covers, &state, shader, &mut self.tile, &Silent);
             }
             Stage::Frame => self.prepared.draw(),
         }

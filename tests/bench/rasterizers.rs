@@ -23,8 +23,16 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use scenes::{NAMES, Scene};
 
 /// What is measured, in the order of the table.
-const STAGES: [Stage; 7] =
-    [Stage::Clear, Stage::Vertex, Stage::Clip, Stage::Setup, Stage::Raster, Stage::Shade, Stage::Frame];
+const STAGES: [Stage; 8] = [
+    Stage::Clear,
+    Stage::Vertex,
+    Stage::Clip,
+    Stage::Setup,
+    Stage::Raster,
+    Stage::Shade,
+    Stage::Kernel,
+    Stage::Frame,
+];
 /// A scene to try everything on.
 const TINY: &str = "sphere:100:64x36";
 
@@ -38,8 +46,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         writeln!(out, "{name}: {}", scene.description())?;
         writeln!(
             out,
-            "{:18}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>10}",
-            "", "clear", "vertex", "clip", "setup", "raster", "shade", "frame"
+            "{:18}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>10}",
+            "", "clear", "vertex", "clip", "setup", "raster", "shade", "kernel", "frame"
         )?;
         for contender in measured(&scene, &options)? {
             writeln!(out, "{contender}")?;
@@ -133,12 +141,12 @@ fn measured(scene: &Scene, options: &Options) -> Result<Vec<Contender>, Box<dyn 
 impl std::fmt::Display for Contender {
     /// A row of the table. Some stages are measured together with what must come before them; that is taken off.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let [clear, vertex, clip, setup, raster, shade, frame] = self.times.clone().map(median);
+        let [clear, vertex, clip, setup, raster, shade, kernel, frame] = self.times.clone().map(median);
         write!(f, "{:18}{clear:9.3}{vertex:9.3}{clip:9.3}{setup:9.3}", self.name)?;
         write!(f, "{:9.3}", raster - setup)?;
         // What throws its fragments away hides nothing, and may take longer than what is left out if they are kept.
         let shade = shade - clear - raster;
         let shade = if shade > 0.0 { format!("{shade:.3}") } else { "–".to_owned() };
-        write!(f, "{shade:>9}{frame:10.3}")
+        write!(f, "{shade:>9}{kernel:9.3}{frame:10.3}")
     }
 }

@@ -8,8 +8,9 @@ use rasterbook::depth::{DepthEncoding, DepthTest};
 use rasterbook::exact::Exact;
 use rasterbook::interpolate::Interpolation;
 use rasterbook::merge::{Blend, Merge};
+use rasterbook::real::each;
 use rasterbook::texture::{AddressMode, Texture};
-use rasterbook::tiled::Tiled;
+use rasterbook::tiled::{Instructions, Tiled};
 use rasterbook::transform::Viewport;
 use rasterbook::{
     ClipVertex, Color, LoadOp, Mesh, Real, RenderState, Scanline, Shaded, Shader, Silent, Target, draw,
@@ -27,19 +28,26 @@ struct Surface {
 
 impl Shader<3> for Surface {
     type Attributes = Record;
+    const IS_INLINED: bool = true;
 
     fn vertex(&self, &(position, varyings): &Record) -> ClipVertex<3> {
         ClipVertex { position, varyings }
     }
 
+    #[inline(always)]
     fn fragment<R: Real>(&self, [bright, u, v]: [R; 3]) -> Shaded<R> {
         let texel = self.texture.bilinear([u, v], self.mode);
-        let color = texel.map(|channel| channel * bright);
+        let color = each(
+            texel,
+            #[inline(always)]
+            |_, channel| channel * bright,
+        );
         Shaded::translucent(color, bright.min(R::of(1.0))).discard(bright.is_less(R::of(0.05)))
     }
 }
 
-/// A mesh of up to twelve triangles, by every rasterizer: none panics, and `Tiled` draws what `Exact<f32>` does.
+/// A mesh of up to twelve triangles, by every rasterizer: none panics, and `Tiled` draws what `Exact<f32>` does, with all
+/// instructions that the processor has.
 pub(crate) fn scene(data: &[u8]) {
     let bytes = &mut Bytes(data);
     let state = state(bytes);
@@ -61,14 +69,23 @@ pub(crate) fn scene(data: &[u8]) {
     let mut book = Target::<f64>::sized(size.0, size.1);
     draw(&mesh, &shader, &state, &Scanline, &mut book, &Silent);
     draw(&mesh, &shader, &state, &Exact::<f64>::new(), &mut book, &Silent);
-    let [mut exact, mut tiled] = [(); 2].map(|()| Target::<f32>::sized(size.0, size.1));
+    let mut exact = Target::<f32>::sized(size.0, size.1);
     draw(&mesh, &shader, &state, &Exact::<f32>::new(), &mut exact, &Silent);
-    Tiled::new().draw_mesh(&mesh, &shader, &state, &mut tiled);
+    for instructions in Instructions::available() {
+        let mut tiled = Target::<f32>::sized(size.0, size.1);
+        Tiled::new().with_instructions(instructions).draw_mesh(&mesh, &shader, &state, &mut tiled);
+        compare(&tiled, &exact, instructions);
+    }
+}
+
+/// Colors and depths, as bits; what is not a number may be written in any way.
+fn compare(tiled: &Target<f32>, exact: &Target<f32>, instructions: Instructions) {
     for (x, y) in exact.color.rect().pixels() {
-        assert_eq!(tiled.color.get(x, y), exact.color.get(x, y), "color at ({x}, {y})");
-        let depths = [&tiled, &exact].map(|target| target.depth.get(x, y).expect("inside"));
+        let colors = [tiled, exact].map(|target| target.color.get(x, y));
+        assert_eq!(colors[0], colors[1], "color at ({x}, {y}), {instructions}");
+        let depths = [tiled, exact].map(|target| target.depth.get(x, y).expect("inside"));
         let is_same = depths[0].to_bits() == depths[1].to_bits() || depths.iter().all(|depth| depth.is_nan());
-        assert!(is_same, "depths {depths:?} at ({x}, {y})");
+        assert!(is_same, "depths {depths:?} at ({x}, {y}), {instructions}");
     }
 }
 
