@@ -122,13 +122,24 @@ fn sizes_that_are_refused() {
         assert_panics("samples", || Samples::new(width, height, &CENTER));
     }
     assert_panics("samples", || Samples::new(1, 1, &[]));
-    for (width, height, count) in [(0, 0, 0), (0, 9, 0), (9, 0, 0), (2, 2, 3), (u32::MAX, u32::MAX, 1)] {
+    // The last two, multiplied in 32 bits, are what is given.
+    for (width, height, count) in [
+        (0, 0, 0),
+        (0, 9, 0),
+        (9, 0, 0),
+        (2, 2, 3),
+        (u32::MAX, u32::MAX, 1),
+        (1 << 16, (1 << 16) + 1, 1 << 16),
+        (3 << 15, 1 << 17, 0),
+    ] {
         assert_panics("a texture", || Texture::new(width, height, vec![Color::RED; count]));
     }
     let most = (1 << 24) + 1;
     assert_panics("a texture", || Texture::new(most, 1, vec![Color::RED; most as usize]));
     assert_panics("a plane of depths", || DepthBuffer::<f64>::new(u32::MAX, u32::MAX));
-    assert_eq!(DepthBuffer::<f32>::new(0, u32::MAX).get(0, 0), None);
+    for (width, height) in [(0, u32::MAX), (u32::MAX, 0)] {
+        assert_eq!(DepthBuffer::<f32>::new(width, height).get(0, 0), None);
+    }
 }
 
 #[test]

@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use rasterbook::exact::edge::snap;
 use rasterbook::figure::picture::{Zoom, draw_enlarged_within, enlarged, paste, side_by_side, zoomed};
-use rasterbook::figure::{Fit, Knob, Knobs, Sketch, Value, Variant, stroke};
-use rasterbook::inspect::overdraw;
+use rasterbook::figure::{DrawOptions, Fit, Knob, Knobs, Sketch, Value, Variant, stroke};
+use rasterbook::inspect::{Steps, overdraw};
 use rasterbook::observer::Enlargement;
 
 use super::*;
@@ -42,7 +42,7 @@ proptest! {
         let square = (b - a).length_squared();
         if square == 0.0 || square.is_infinite() {
             assert!(second == third || !width.is_finite(), "no width, and no area: {second} {third}");
-        } else if width.abs() < 1e9 && square < 1e18 && square > 1e-18 {
+        } else if width.abs() < 1e6 && a.abs().max_element() < 1e6 && (1e-6..1e12).contains(&square) {
             assert!((first.distance(sixth) - width.abs()).abs() < 1e-6, "{first} {sixth}");
             assert!((second.distance(third) - width.abs()).abs() < 1e-6, "{second} {third}");
         }
@@ -79,8 +79,9 @@ proptest! {
         }
 
         let (fit, is_red) = sketched(size, part, |sketch| sketch.number(number, a, Color::RED));
-        // As wide as ten digits of four dots, which may be as large as a dot of one pixel.
-        let is_far = fit.at(a).abs().max_element() > 100.0 + 50.0 * fit.scale.abs().max(1.0);
+        // Ten digits are forty dots wide, each of two pixels of the scene and at least one of the picture. Dots that are as
+        // large as numbers go reach the picture from anywhere.
+        let is_far = fit.scale < 1e6 && fit.at(a).abs().max_element() > 100.0 * fit.scale.max(1.0);
         assert!(!is_far || !Rect::sized(7, 5).pixels().any(is_red));
     }
 
@@ -183,6 +184,16 @@ fn writes_are_counted_where_an_enlarged_screen_is_far_away() {
     let (picture, lines) = overdraw(&variant, &variant.options(None));
     assert_eq!(picture.get(0, 0), picture.get(1, 0));
     assert_eq!(lines[3], "2: yellow (2 pixels)", "of two blocks, each larger than the picture");
+}
+
+#[test]
+fn sizes_are_judged_before_anything_is_drawn() {
+    let variant = Variant::new("none", |_: &mut Framebuffer| unreachable!("it is too large"), "");
+    for size in [(u32::MAX, u32::MAX), (1 << 31, 1), (1 << 16, 1 << 15), (1 << 13, 1 << 12)] {
+        let options = DrawOptions { size, ..variant.options(None) };
+        let (width, height) = Steps::new(&variant, &options).expect_err("too many steps").fitting;
+        assert!(u64::from(width) * u64::from(height) <= 1 << 24, "{width}×{height} do not fit");
+    }
 }
 
 #[test]
