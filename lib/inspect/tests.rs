@@ -95,7 +95,7 @@ fn early(picture: &mut Framebuffer) {
     let scissor = picture.scissor();
     for (from, to) in [((0.0, 2.5), (9.0, 7.0)), ((4.0, 12.0), (2.0, 1.0)), ((0.0, 5.0), (9.0, 0.0))] {
         dda(from.into(), to.into(), StepAxis::Longer, scissor.clone(), |x, y| {
-            picture.set(x, y, Color::GREEN)
+            picture.set(x, y, Color::GREEN);
         });
     }
     let triangle = [dvec2(1.0, 1.0), dvec2(9.0, 4.0), dvec2(2.0, 12.0)];
@@ -114,7 +114,7 @@ fn early(picture: &mut Framebuffer) {
         screen.clear(Color::BLACK);
         let scissor = screen.scissor();
         dda(dvec2(0.0, 0.0), dvec2(3.0, 3.0), StepAxis::Longer, scissor, |x, y| {
-            screen.set(x, y, Color::WHITE)
+            screen.set(x, y, Color::WHITE);
         });
     });
 }
