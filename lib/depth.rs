@@ -115,7 +115,8 @@ pub fn w_from_z(z: f64, near: f64, far: f64) -> f64 {
 /// distance w. Nearer is larger, so the test is [`DepthTest::Greater`].
 ///
 /// n (f − w) / ((f − n) w), which is 1 − [`z_from_w`], computed without subtracting from 1: that
-/// would round off what is small far away. Source: Reed, *Depth precision visualized*, 2015.
+/// would round off what is small far away. Not a number where both products are 0 or infinite.
+/// Source: Reed, *Depth precision visualized*, 2015.
 #[must_use]
 pub fn reversed_z_from_w(w: f64, near: f64, far: f64) -> f64 {
     near * (far - w) / ((far - near) * w)

@@ -1,12 +1,13 @@
-//! Figures: fit, picture, sketch, knobs.
+//! Figures: fit, picture, sketch, knobs; of inspect what draws.
 
 use std::ops::Range;
 
 use rasterbook::exact::edge::snap;
-use rasterbook::figure::picture::{Zoom, draw_enlarged_within, enlarged, paste, side_by_side, zoomed};
+use rasterbook::figure::picture::{
+    Zoom, difference, draw_enlarged, draw_enlarged_within, enlarged, paste, side_by_side, zoomed,
+};
 use rasterbook::figure::{DrawOptions, Fit, Knob, Knobs, Sketch, Value, Variant, stroke};
-use rasterbook::inspect::{Steps, overdraw};
-use rasterbook::observer::Enlargement;
+use rasterbook::inspect::{Steps, heat_legend, overdraw, with_legend};
 
 use super::*;
 
@@ -91,6 +92,10 @@ proptest! {
     ) {
         let fit = Fit::new(picture, size);
         let _ = (fit.at(at), fit.back(at), fit.rect(rect));
+        let placed = fit.triangle([ScreenVertex { position: at, varyings: reach }; 3]);
+        let bits = |point: DVec2| point.to_array().map(bits_of);
+        assert!(placed.iter().all(|vertex| bits(vertex.position) == bits(fit.at(at))));
+        assert!(placed.iter().all(|vertex| vertex.varyings.to_bits() == reach.to_bits()));
         let mark = fit.mark(at, reach);
         let pixel = (at.x as i32, at.y as i32);
         if reach >= 0.0 && fit.scale >= 0.0 && pixel.0 < i32::MAX && pixel.1 < i32::MAX {
@@ -197,12 +202,37 @@ fn sizes_are_judged_before_anything_is_drawn() {
 }
 
 #[test]
+fn the_largest_pictures_are_compared_and_explained() {
+    const MOST: u32 = Framebuffer::MAX_SIDE;
+    let other = Framebuffer::new(2, 2);
+    for (width, height, below) in
+        [(MOST, 1, 22), (1, MOST, 0), (1, 1, 118), (MOST, 23, 22), (23, MOST - 117, 0), (23, MOST - 118, 118)]
+    {
+        let mut picture = Framebuffer::new(width, height);
+        let black = picture.clone();
+        let (right, top) = (width as i32 - 1, height as i32 - 1);
+        picture.set(right, top, Color::RED);
+        let (marked, count) = difference(&black, &picture).expect("of the same size");
+        assert_eq!((marked.rect(), count), (picture.rect(), 1));
+        assert!(difference(&picture, &other).is_none());
+
+        let shown = with_legend(picture);
+        assert!(shown.width() >= width && shown.height() == height + below, "{shown:?}");
+        assert_eq!(shown.get(right, top + below as i32), Some(Color::RED));
+    }
+    assert!(heat_legend().lines().count() == 1 && heat_legend().contains("black 0"));
+}
+
+#[test]
 fn too_large_pictures_panic() {
     let picture = Framebuffer::new(3, 3);
     // Three times the second is 2, where 32 bits end.
     for factor in [0, 1_431_655_766, u32::MAX] {
         assert_panics("an enlarged picture", || enlarged(&picture, factor));
         assert_panics("a zoomed picture", || zoomed(&picture, Zoom { factor, center: None }));
+    }
+    for screen in [(0, 1), (1, 0), (Framebuffer::MAX_SIDE + 1, 1), (u32::MAX, u32::MAX)] {
+        assert_panics("an enlarged screen", || draw_enlarged(&mut Framebuffer::new(3, 3), screen, |_| ()));
     }
     assert_panics("no factor", || Zoom { factor: 0, center: None }.part(picture.rect()));
     assert!(side_by_side(&[]).is_none() && side_by_side(&vec![picture; 5000]).is_none());
