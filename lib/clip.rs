@@ -86,7 +86,7 @@ impl Plane {
         Self { normal: dvec4(0.0, 0.0, 0.0, 1.0), offset: -distance }
     }
 
-    /// How far inside a point is; negative outside.
+    /// How far inside a point with finite coordinates is; negative outside.
     #[must_use]
     #[inline]
     pub fn signed_distance(&self, position: DVec4) -> f64 {

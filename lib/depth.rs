@@ -13,7 +13,7 @@
 //! ```
 
 use crate::observer::SharedObserver;
-use crate::plane::PixelPlane;
+use crate::plane::{PixelPlane, count_of};
 use crate::real::Scalar;
 use crate::rect::Rect;
 
@@ -115,7 +115,8 @@ pub fn w_from_z(z: f64, near: f64, far: f64) -> f64 {
 /// distance w. Nearer is larger, so the test is [`DepthTest::Greater`].
 ///
 /// n (f − w) / ((f − n) w), which is 1 − [`z_from_w`], computed without subtracting from 1: that
-/// would round off what is small far away. Source: Reed, *Depth precision visualized*, 2015.
+/// would round off what is small far away. Not a number where both products are 0 or infinite.
+/// Source: Reed, *Depth precision visualized*, 2015.
 #[must_use]
 pub fn reversed_z_from_w(w: f64, near: f64, far: f64) -> f64 {
     near * (far - w) / ((far - near) * w)
@@ -175,7 +176,9 @@ impl<D: Scalar> DepthBuffer<D> {
     /// If no memory can hold so many.
     #[must_use]
     pub fn new(width: u32, height: u32) -> Self {
-        let values = vec![D::of(0.0); width as usize * height as usize];
+        let count = count_of::<D>([width, height], 1);
+        let count = count.unwrap_or_else(|| panic!("no memory can hold {width}×{height} depths"));
+        let values = vec![D::of(0.0); count];
         Self { rect: Rect::sized(width, height), values: values.into(), observer: None }
     }
 
@@ -239,6 +242,12 @@ mod tests {
     use super::*;
     use crate::interpolate::{Interpolation, Projected};
     use proptest::prelude::*;
+
+    #[test]
+    #[should_panic(expected = "no memory can hold 4294967295×4294967294 depths")]
+    fn a_buffer_has_its_limit() {
+        let _ = DepthBuffer::<f64>::new(u32::MAX, u32::MAX - 1);
+    }
 
     #[test]
     fn tests_by_name() {

@@ -27,6 +27,9 @@ pub fn dot<R: Real>(a: Vector<R>, b: Vector<R>) -> R {
 }
 
 /// The vector of length 1 in the same direction; not finite for the zero vector.
+///
+/// The square of the length is needed on the way. Where that is rounded to 0 the result is not finite, either; where it is
+/// infinite, as for `f64` from a length of 1.4 · 10¹⁵⁴ on, a finite vector becomes the zero vector.
 #[must_use]
 #[inline(always)]
 pub fn normalize<R: Real>(v: Vector<R>) -> Vector<R> {
@@ -78,8 +81,8 @@ pub fn reflect<R: Real>(normal: Vector<R>, to_light: Vector<R>) -> Vector<R> {
 }
 
 // ANCHOR: lambert
-/// Diffuse light: max(0, n·l), the cosine of the angle at which the light arrives. Book, section
-/// 11.1.
+/// Diffuse light: max(0, n·l), the cosine of the angle at which the light arrives; 0 where n·l is
+/// not a number. Book, section 11.1.
 ///
 /// ```text
 ///    light straight from above: much of it       at an angle: the same light on more surface
@@ -94,7 +97,7 @@ pub fn lambert<R: Real>(normal: Vector<R>, to_light: Vector<R>) -> R {
 }
 // ANCHOR_END: lambert
 
-/// How much of a point light's intensity arrives at a distance: 1 / r². Source: fourth note, Lambert model.
+/// How much of a point light's intensity arrives at a distance: 1 / r², infinite at 0. Source: fourth note, Lambert model.
 #[must_use]
 #[inline(always)]
 pub fn attenuation<R: Real>(distance: R) -> R {
@@ -102,8 +105,8 @@ pub fn attenuation<R: Real>(distance: R) -> R {
 }
 
 // ANCHOR: specular
-/// Phong's highlight: max(0, r·v)^p, r the reflected light, v the direction to the eye. Large
-/// exponents make it small.
+/// Phong's highlight: max(0, r·v)^p, r the reflected light, v the direction to the eye; max(0, r·v)
+/// is 0 where r·v is not a number. Large exponents make it small.
 ///
 /// Where the angle between r and v passes 90° the highlight is cut off, which shows at small
 /// exponents. Source: fourth note, Phong model.
@@ -117,7 +120,8 @@ where
 }
 
 /// The highlight of Blinn–Phong: max(0, n·h)^p, h half-way between light and eye. It has no cut-off
-/// while both are above the surface. Source: fourth note, Blinn–Phong model.
+/// while both are above the surface. Where they are opposite to each other there is no h, and
+/// max(0, n·h) is 0. Source: fourth note, Blinn–Phong model.
 #[must_use]
 #[inline(always)]
 pub fn blinn_phong<R>(normal: Vector<R>, to_light: Vector<R>, to_eye: Vector<R>, exponent: f64) -> R
@@ -164,7 +168,8 @@ fn power<R: Real>(base: R, exponent: f64) -> R {
 ///        └───── t (red)
 /// ```
 ///
-/// No texel leaves it exactly: 0 would be 127.5, and 128 tilts the normal by 0.3°.
+/// No texel leaves it exactly: 0 would be 127.5, and 128 tilts the normal by 0.3°. A mixture of
+/// texels that is 127.5 in all channels is the zero vector: the normal is not finite.
 ///
 /// The axes are of length 1 and in any space; the normal is in the same. Source: first note (a
 /// normal map on a quad).
@@ -194,7 +199,8 @@ pub enum Light {
 }
 
 impl Light {
-    /// At a place: the direction towards the light, and how bright it is there.
+    /// At a place: the direction towards the light, and how bright it is there. At a point light
+    /// itself there is no direction: neither is finite.
     #[must_use]
     #[inline(always)]
     pub fn at<R: Real>(&self, place: Vector<R>) -> (Vector<R>, R) {
@@ -242,7 +248,8 @@ impl Material {
     /// The color (0..=255) of a surface of color `surface` under white light of some intensity.
     ///
     /// As in the note, nothing keeps a broad highlight from reaching a little beyond where the
-    /// surface turns away from the light.
+    /// surface turns away from the light. A channel that is not a number, as at a point light
+    /// itself, is 255.
     #[must_use]
     #[inline(always)]
     pub fn shade<R: Real>(

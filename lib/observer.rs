@@ -50,10 +50,25 @@ pub struct Enlargement {
 
 impl Enlargement {
     /// The pixel of the screen that a pixel of the picture shows; beside the blocks, one outside the screen.
+    ///
+    /// # Panics
+    /// If the factor is 0.
     #[must_use]
     pub const fn pixel_at(self, (x, y): Pixel) -> Pixel {
-        let factor = self.factor as i32;
-        ((x - self.origin.0).div_euclid(factor), (y - self.origin.1).div_euclid(factor))
+        (self.block_at(x, self.origin.0), self.block_at(y, self.origin.1))
+    }
+
+    /// Which block a column or a row belongs to, where the first begins at `origin`.
+    const fn block_at(self, place: i32, origin: i32) -> i32 {
+        let number = (place as i64 - origin as i64).div_euclid(self.factor as i64);
+        // Of blocks of one pixel there are more than numbers: the last stand for those beyond.
+        if number < i32::MIN as i64 {
+            i32::MIN
+        } else if number > i32::MAX as i64 {
+            i32::MAX
+        } else {
+            number as i32
+        }
     }
 }
 

@@ -5,6 +5,13 @@
 
 use std::ops::{Deref, DerefMut};
 
+/// How many values a plane of these sides has, with so many for each pixel; `None` if no memory can hold them.
+pub(crate) fn count_of<T>([width, height]: [u32; 2], values: usize) -> Option<usize> {
+    let count = (u128::from(width) * u128::from(height)).checked_mul(values as u128)?;
+    let most = isize::MAX as u128 / size_of::<T>() as u128;
+    (count <= most).then_some(count as usize)
+}
+
 /// The values of a picture, row by row from below, each from left to right.
 #[derive(Debug)]
 pub(crate) struct PixelPlane<T> {
@@ -79,10 +86,23 @@ impl<T> PixelPlane<T> {
     }
 }
 
-#[cfg(all(test, feature = "tiled"))]
+#[cfg(test)]
 mod tests {
     use super::*;
 
+    #[test]
+    fn planes_are_counted_as_far_as_memory_goes() {
+        const SIDE: u32 = 1 << 16;
+        assert_eq!(count_of::<u8>([3, 2], 5), Some(30));
+        assert_eq!([[0, u32::MAX], [u32::MAX, 0]].map(|sides| count_of::<f64>(sides, 1)), [Some(0); 2]);
+        // Just so many, or one more; with 32 bits these sides would be multiplied to 0.
+        let most = isize::MAX as usize / 8;
+        assert_eq!([most, most + 1].map(|values| count_of::<f64>([1, 1], values)), [Some(most), None]);
+        assert_eq!(count_of::<f64>([SIDE, SIDE], 1).is_some(), usize::BITS > 32);
+        assert_eq!(count_of::<u8>([u32::MAX; 2], usize::MAX), None);
+    }
+
+    #[cfg(feature = "tiled")]
     #[test]
     fn a_memo_is_kept_until_a_value_changes() {
         let mut plane = PixelPlane::from(vec![1, 2, 3]);

@@ -38,13 +38,16 @@ impl<D: Scalar> Target<D> {
     /// A target of `width` × `height` pixels; clear it before drawing.
     ///
     /// # Panics
-    /// As [`Framebuffer::new`] does.
+    /// As [`Framebuffer::new`] and [`DepthBuffer::new`] do.
     #[must_use]
     pub fn sized(width: u32, height: u32) -> Self {
         Self { color: Framebuffer::new(width, height), depth: DepthBuffer::new(width, height) }
     }
 
     /// A target for the picture of a framebuffer: of its size, black, and with the same observer.
+    ///
+    /// # Panics
+    /// As [`DepthBuffer::new`] does.
     #[must_use]
     pub fn like(framebuffer: &Framebuffer) -> Self {
         let mut target = Self::sized(framebuffer.width(), framebuffer.height());
@@ -81,7 +84,7 @@ impl Target {
     /// A target of `width` × `height` pixels in double precision; clear it before drawing.
     ///
     /// # Panics
-    /// As [`Framebuffer::new`] does.
+    /// As [`Framebuffer::new`] and [`DepthBuffer::new`] do.
     #[must_use]
     pub fn new(width: u32, height: u32) -> Self {
         Self::sized(width, height)

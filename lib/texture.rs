@@ -114,9 +114,10 @@ impl Texture {
     /// If there are not `width` × `height` texels, or none, or if a side is longer than 2²⁴.
     #[must_use]
     pub fn new(width: u32, height: u32, texels: Vec<Color>) -> Self {
-        let count = width as usize * height as usize;
         assert!(width.max(height) <= 1 << 24, "no side of a texture has {} texels", width.max(height));
-        assert!(count > 0 && texels.len() == count, "{width}×{height} texels, but {} given", texels.len());
+        // Of 64 bits: in 32, sides that are too large could be multiplied to the number that is given.
+        let (count, given) = (u64::from(width) * u64::from(height), texels.len() as u64);
+        assert!(count > 0 && given == count, "{width}×{height} texels, but {given} given");
         let (columns, rows) = (width as f32, height as f32);
         let (last_column, last_row) = (columns - 1.0, rows - 1.0);
         let row_bits = width.next_power_of_two().trailing_zeros();

@@ -1,12 +1,16 @@
-//! The functions of the core library, and some of figures, with the oddest numbers that their types have: each keeps
-//! what its documentation says, and none panics unless that says so. What the rasterizers make of such numbers as a
-//! whole is in `tests/tiled.rs`.
+//! The functions of the core library, and of figures those for pictures, sketches and knobs, with the oddest numbers that
+//! their types have: each keeps what its documentation says, and none panics unless that says so. What the rasterizers
+//! make of such numbers as a whole is in `tests/tiled.rs`, what is made of odd files in `tests/wild.rs`.
 
 #[path = "extremes/exact.rs"]
 mod exact;
 #[cfg(feature = "figure")]
 #[path = "extremes/figure.rs"]
 mod figure;
+#[path = "extremes/light.rs"]
+mod light;
+#[path = "extremes/number.rs"]
+mod number;
 #[path = "extremes/odd.rs"]
 mod odd;
 
@@ -24,7 +28,9 @@ use rasterbook::clip::{
     ClipTest, ClipVolume, DepthRange, NdcVertex, Plane, RecordedVertex, clip_polygon, clip_triangle, fan,
 };
 use rasterbook::cull::CullMode;
-use rasterbook::depth::{DepthBuffer, DepthEncoding, DepthTest, w_from_z, z_from_w};
+use rasterbook::depth::{
+    DepthBuffer, DepthEncoding, DepthFormat, DepthTest, reversed_z_from_w, w_from_z, z_from_w,
+};
 use rasterbook::exact::samples::{CENTER, Samples};
 use rasterbook::interpolate::{
     Interpolation, Projected, ScreenVertex, barycentric_weights, linear, perspective_weights, step_parameter,
@@ -34,7 +40,7 @@ use rasterbook::line::{Line, StepAxis, dda};
 use rasterbook::merge::{Blend, Merge, Rounding, Verdict, merge};
 use rasterbook::mesh::MeshError;
 use rasterbook::mipmap::MipMaps;
-use rasterbook::observer::Observer;
+use rasterbook::observer::{Enlargement, Observer};
 use rasterbook::payload::{Payload, StepClamp, Walk};
 use rasterbook::real::Scalar;
 use rasterbook::scanline::{Edge, EdgeWalk, Half, Span, spans, split};
@@ -43,7 +49,7 @@ use rasterbook::swap_chain::SwapChain;
 use rasterbook::texture::{AddressMode, Texture};
 use rasterbook::transform::{self, Frustum, Viewport};
 use rasterbook::varyings::{LinearVaryings, TriangleVaryings, weight_gradients};
-use rasterbook::{ClipVertex, Color, Framebuffer, Mesh, Pixel, Rect, Shaded, Target, srgb};
+use rasterbook::{ClipVertex, Color, Framebuffer, Mesh, Pixel, Rect, RenderState, Shaded, Target, srgb};
 
 fn walk() -> impl Strategy<Value = Walk> {
     let edges = select(&[EdgeWalk::Clamped, EdgeWalk::Unclamped][..]);
@@ -107,7 +113,39 @@ proptest! {
         let green = framebuffer.rows_from_top().flatten().filter(|&&color| color == Color::GREEN).count();
         let part = framebuffer.scissor().within(rect).rect;
         assert_eq!(part, rect.intersection(whole));
+        // What the rectangle contains has a place, unless there are more of them than numbers.
+        assert!(rect.index(x, y).is_none() || rect.contains(x, y));
+        assert_eq!(whole.index(x, y), is_inside.then(|| 5 * y as usize + x as usize));
         assert_eq!(green, part.rows().len() * part.columns().len());
+    }
+}
+
+proptest! {
+    #[test]
+    fn blocks_of_an_enlarged_screen(
+        pixel in (any_whole(), any_whole()), origin in (any_whole(), any_whole()),
+        factor in prop_oneof![1_u32..9, Just(i32::MAX as u32), Just(1 << 31), Just(u32::MAX), any::<u32>()],
+    ) {
+        let enlargement = Enlargement { screen: Rect::sized(3, 2), factor, origin };
+        if factor == 0 {
+            assert_panics("no factor", || enlargement.pixel_at(pixel));
+            return Ok(());
+        }
+        let (x, y) = enlargement.pixel_at(pixel);
+        for (number, place, origin) in [(x, pixel.0, origin.0), (y, pixel.1, origin.1)] {
+            let [number, place, origin] = [number, place, origin].map(i64::from);
+            let first = origin + number * i64::from(factor);
+            let is_in_it = first <= place && place < first + i64::from(factor);
+            assert!(is_in_it || [i32::MIN, i32::MAX].map(i64::from).contains(&number), "{number}: {first}");
+        }
+    }
+
+    #[test]
+    fn colors_of_any_channels([red, green, blue] in any::<[u8; 3]>()) {
+        let color = Color::rgb(red, green, blue);
+        assert_eq!(Color::truncated(color.to_f64()), color);
+        let board = Texture::checkerboard(color, Color::WHITE);
+        assert_eq!(board.nearest_texel([0.25, 0.25], AddressMode::Clamp), color);
     }
 }
 
@@ -122,13 +160,24 @@ fn sizes_that_are_refused() {
         assert_panics("samples", || Samples::new(width, height, &CENTER));
     }
     assert_panics("samples", || Samples::new(1, 1, &[]));
-    for (width, height, count) in [(0, 0, 0), (0, 9, 0), (9, 0, 0), (2, 2, 3), (u32::MAX, u32::MAX, 1)] {
+    // The last two, multiplied in 32 bits, are what is given.
+    for (width, height, count) in [
+        (0, 0, 0),
+        (0, 9, 0),
+        (9, 0, 0),
+        (2, 2, 3),
+        (u32::MAX, u32::MAX, 1),
+        (1 << 16, (1 << 16) + 1, 1 << 16),
+        (3 << 15, 1 << 17, 0),
+    ] {
         assert_panics("a texture", || Texture::new(width, height, vec![Color::RED; count]));
     }
     let most = (1 << 24) + 1;
     assert_panics("a texture", || Texture::new(most, 1, vec![Color::RED; most as usize]));
     assert_panics("a plane of depths", || DepthBuffer::<f64>::new(u32::MAX, u32::MAX));
-    assert_eq!(DepthBuffer::<f32>::new(0, u32::MAX).get(0, 0), None);
+    for (width, height) in [(0, u32::MAX), (u32::MAX, 0)] {
+        assert_eq!(DepthBuffer::<f32>::new(width, height).get(0, 0), None);
+    }
 }
 
 #[test]
@@ -289,7 +338,9 @@ fn assert_texels<R: Scalar>(texture: &Texture, maps: &MipMaps, numbers: [f64; 5]
     let [u, v, level, du, dv]: [R; 5] = reals(numbers);
     for mode in MODES {
         assert_within(texture.nearest([u, v], mode), [0.0, 255.0]);
-        let _: Color = texture.nearest_texel([u, v], mode);
+        let shaded = Shaded::<R>::texel(texture.nearest_texel([u, v], mode));
+        let [red, green, blue] = texture.nearest([u, v], mode);
+        assert_eq!((shaded.color.channels(), shaded.keep), ([red, green, blue, R::of(1.0)], true));
         for mixed in [
             texture.bilinear([u, v], mode),
             maps.bilinear([u, v], level, mode),
@@ -386,6 +437,10 @@ proptest! {
             assert!(!ndc.truncate().is_nan() || screen.is_nan());
         }
         assert!(fitting.matrix().is_finite());
+        for viewport in [None, Some(fitting)] {
+            let state = RenderState { viewport, ..RenderState::default() };
+            assert_eq!(state.viewport_in(rect), viewport.unwrap_or(whole));
+        }
     }
 }
 
@@ -410,9 +465,22 @@ fn assert_depths<R: Scalar>(numbers: [f64; 2], (x, y): (i32, i32)) {
             let shaded = Shaded::translucent([depth; 3], stored);
             let verdict = merge(&mut target, options, Rounding::Nearest, (x, y), depth, shaded);
             assert!(is_inside || verdict == Verdict::Hidden);
+            let opaque = Shaded::opaque([depth; 3]).color.channels().map(|number| bits_of(number.into()));
+            assert_eq!(opaque, [depth, depth, depth, R::of(1.0)].map(|number| bits_of(number.into())));
             let discarded =
                 merge(&mut target, options, Rounding::Nearest, (x, y), depth, shaded.discard(true));
             assert_eq!(discarded, Verdict::Discarded);
+        }
+    }
+}
+
+fn assert_stored(depth: f64) {
+    for format in [DepthFormat::Unorm24, DepthFormat::Float32] {
+        let (stored, step) = (format.stored(depth), format.step(depth));
+        assert_eq!(stored.is_nan(), depth.is_nan());
+        if (0.0..1.0).contains(&depth) {
+            assert!(step > 0.0 && (stored - depth).abs() <= 0.500_001 * step, "{stored} for {depth}");
+            assert_eq!(format.stored(stored), stored, "what is stored stays");
         }
     }
 }
@@ -442,6 +510,19 @@ proptest! {
             assert!(!encoding.is_linear_on_screen() || clip_z == -1.0 || encoding == DepthEncoding::Ndc);
         }
         let _ = [z_from_w(z, near, far), w_from_z(z, near, far)];
+        for (w, expected) in [(near, 1.0), (far, 0.0)] {
+            let [above, below] = [near * (far - w), (far - near) * w];
+            let reversed = reversed_z_from_w(w, near, far);
+            let is_lost = |number: f64| !number.is_finite() || number == 0.0;
+            assert!(is_lost(below) || above.is_infinite() || above.is_nan() || reversed == expected, "{reversed}");
+            assert_eq!(reversed_z_from_w(z, near, far).is_nan(), {
+                let [above, below] = [near * (far - z), (far - near) * z];
+                above.is_nan() || below.is_nan() || (above == 0.0 && below == 0.0) || (above.is_infinite() && below.is_infinite())
+            });
+        }
+        for depth in [z, near, far] {
+            assert_stored(depth);
+        }
     }
 
     #[test]
@@ -465,6 +546,19 @@ fn clip_vertex() -> impl Strategy<Value = ClipVertex<1>> {
     numbers().prop_map(vertex)
 }
 
+/// Distances have the sign of what is compared, however large that is.
+fn assert_distances(position: DVec4, distance: f64) {
+    let DVec4 { x, y, z, w } = position;
+    let compared = [[x, -w], [w, x], [y, -w], [w, y], [z, -w], [w, z]];
+    for (plane, [greater, less]) in Plane::CANONICAL.into_iter().zip(compared) {
+        let found = plane.signed_distance(position);
+        assert_eq!((found >= 0.0, found < 0.0), (greater >= less, greater < less), "{plane:?} {position}");
+    }
+    assert_eq!(Plane::ZERO_TO_ONE[4].signed_distance(position), z);
+    let found = Plane::in_front(distance).signed_distance(position);
+    assert_eq!((found >= 0.0, found < 0.0), (w >= distance, w < distance), "{distance} {position}");
+}
+
 fn assert_varyings<R: Scalar>(vertices: &[NdcVertex<1>; 3], screen: [DVec2; 3], numbers: [f64; 2]) {
     let weights: [R; 2] = reals(numbers);
     for interpolation in INTERPOLATIONS {
@@ -474,7 +568,19 @@ fn assert_varyings<R: Scalar>(vertices: &[NdcVertex<1>; 3], screen: [DVec2; 3], 
         let point = varyings.at(weights);
         let same = varyings.linear_at(weights).multiplied(interpolation);
         assert_eq!(format!("{point:?}"), format!("{same:?}"));
-        let _ = varyings.derivatives(&moved, weight_gradients(screen));
+        let gradients: [[R; 2]; 2] = weight_gradients(screen);
+        let derivatives = varyings.derivatives(&moved, gradients);
+        let along = gradients.map(|weights| varyings.change(weights).derivative(&moved, interpolation));
+        assert_eq!(
+            format!("{:?}{:?}", derivatives.dx, derivatives.dy),
+            format!("{:?}{:?}", along[0], along[1])
+        );
+        let (change, point) = (varyings.change(gradients[0]), moved.values[0]);
+        let expected = match interpolation {
+            Interpolation::Affine => change.values[0],
+            _ => (change.values[0] - point * change.distance) * moved.w,
+        };
+        assert_eq!(bits_of(along[0][0].into()), bits_of(expected.into()));
     }
 }
 
@@ -498,6 +604,9 @@ proptest! {
             let none: ArrayVec<_, 0> = clip_polygon(&vertices[..1], &odd[1], test);
             assert!(kept.len() <= 2 && none.is_empty() && clip_polygon::<1, 9>(&[], &odd[0], test).is_empty());
             assert_panics("a seventh plane", || clip_triangle(vertices, &[odd[0]; 7], test));
+        }
+        for position in vertices.map(|vertex| vertex.position).into_iter().filter(|it| it.is_finite()) {
+            assert_distances(position, distance);
         }
         let divided = vertices.map(NdcVertex::from);
         assert!(divided.iter().all(|vertex| vertex.w != 0.0));

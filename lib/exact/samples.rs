@@ -19,6 +19,7 @@ use crate::color::Color;
 use crate::framebuffer::Framebuffer;
 use crate::merge::Rounding;
 use crate::observer::SharedObserver;
+use crate::plane::count_of;
 use crate::rect::Rect;
 
 /// Where the samples of a pixel are: in 1/256 pixel from its lower left corner.
@@ -70,13 +71,17 @@ impl<'a> Samples<'a> {
     /// `width` × `height` pixels, black and infinitely far away.
     ///
     /// # Panics
-    /// If the pattern is empty, or a side is 0 or larger than [`Framebuffer::MAX_SIDE`].
+    /// If the pattern is empty, or a side is 0 or larger than [`Framebuffer::MAX_SIDE`], or if no memory can hold so many
+    /// samples.
     #[must_use]
     pub fn new(width: u32, height: u32, pattern: &'a Pattern) -> Self {
         let sides = 1..=Framebuffer::MAX_SIDE;
         assert!(sides.contains(&width) && sides.contains(&height), "no picture has {width}×{height} pixels");
         assert!(!pattern.is_empty(), "a pixel without samples has no color");
-        let count = width as usize * height as usize * pattern.len();
+        let count = count_of::<f64>([width, height], pattern.len());
+        let count = count.unwrap_or_else(|| {
+            panic!("no memory can hold {width}×{height} pixels of {} samples", pattern.len())
+        });
         Self {
             pattern,
             rect: Rect::sized(width, height),
@@ -87,6 +92,9 @@ impl<'a> Samples<'a> {
     }
 
     /// Samples for the picture of a framebuffer: of its size, and with the same observer.
+    ///
+    /// # Panics
+    /// As [`Self::new`] does.
     #[must_use]
     pub fn like(framebuffer: &Framebuffer, pattern: &'a Pattern) -> Self {
         let observer = framebuffer.observer();

@@ -299,7 +299,7 @@ fn letters() -> Framebuffer {
     for (i, (_, rows)) in LETTERS.iter().enumerate() {
         let (left, bottom) = (16 * (i as i32 % 2), if i < 2 { 16 } else { 0 });
         small.fill(Rect { left, bottom, right: left + 16, top: bottom + 16 }, colors[i]);
-        glyph(&mut small, rows, (left + 5, bottom + 4), 1, Color::rgb(250, 245, 225));
+        glyph(&mut small, rows, (left + 5, bottom + 4), Color::rgb(250, 245, 225));
     }
     let border = Color::rgb(235, 225, 200);
     for i in 0..32 {
@@ -331,7 +331,7 @@ fn numbers() -> Framebuffer {
         let number = i + 1;
         let digits = if number < 10 { vec![(6, number)] } else { vec![(4, number / 10), (9, number % 10)] };
         for (place, digit) in digits {
-            glyph(&mut small, &DIGITS[digit as usize], (left + place, bottom + 5), 1, Color::rgb(20, 20, 20));
+            glyph(&mut small, &DIGITS[digit as usize], (left + place, bottom + 5), Color::rgb(20, 20, 20));
         }
     }
     blocks(&small, 4)

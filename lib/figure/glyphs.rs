@@ -28,27 +28,38 @@ pub(super) const DOT: i32 = 2;
 /// How high a label is.
 pub(crate) const LABEL_HEIGHT: i32 = 5 * DOT;
 
-/// Draws a letter or a digit with its lower left dot at (left, bottom), each dot as a square of `dot` pixels.
-pub(super) fn glyph(picture: &mut Framebuffer, rows: &[&str], (left, bottom): Pixel, dot: i32, color: Color) {
-    for (y, row) in (0..).zip(rows.iter().rev()) {
-        for (x, _) in (0..).zip(row.chars()).filter(|(_, mark)| *mark == '#') {
-            let (left, bottom) = (left + x * dot, bottom + y * dot);
-            picture.fill(Rect { left, bottom, right: left + dot, top: bottom + dot }, color);
-        }
-    }
+/// Draws a letter or a digit with its lower left dot at (left, bottom), each dot as a pixel.
+pub(super) fn glyph(picture: &mut Framebuffer, rows: &[&str], place: Pixel, color: Color) {
+    squares(rows, place, 1).for_each(|square| picture.fill(square, color));
 }
 
 /// Writes a number, `+` included, with its lower left pixel at (left, bottom).
 pub(crate) fn label(picture: &mut Framebuffer, text: &str, place: Pixel, color: Color) {
-    digits(picture, text, place, DOT, color);
+    digits(text, place, DOT).for_each(|square| picture.fill(square, color));
 }
 
-/// The same, each dot as a square of `dot` pixels.
-pub(super) fn digits(picture: &mut Framebuffer, text: &str, (left, bottom): Pixel, dot: i32, color: Color) {
-    for (place, c) in (0..).zip(text.chars()) {
+/// The dots of such a number, each a square of `dot` pixels.
+pub(super) fn digits(text: &str, (left, bottom): Pixel, dot: i32) -> impl Iterator<Item = Rect> {
+    (0..).zip(text.chars()).flat_map(move |(place, c)| {
         let rows = c.to_digit(10).map_or(&PLUS, |digit| &DIGITS[digit as usize]);
-        glyph(picture, rows, (left + 4 * dot * place, bottom), dot, color);
-    }
+        squares(rows, (dots_after(left, 4 * place, dot), bottom), dot)
+    })
+}
+
+/// The dots of a letter or a digit.
+fn squares(rows: &[&str], (left, bottom): Pixel, dot: i32) -> impl Iterator<Item = Rect> {
+    (0..).zip(rows.iter().rev()).flat_map(move |(y, row)| {
+        let marks = (0..).zip(row.chars()).filter(|(_, mark)| *mark == '#');
+        marks.map(move |(x, _)| {
+            let (left, bottom) = (dots_after(left, x, dot), dots_after(bottom, y, dot));
+            Rect { left, bottom, right: dots_after(left, 1, dot), top: dots_after(bottom, 1, dot) }
+        })
+    })
+}
+
+/// The pixel that is `count` dots after another one; none is after the last that has a number.
+const fn dots_after(from: i32, count: i32, dot: i32) -> i32 {
+    from.saturating_add(count.saturating_mul(dot))
 }
 
 /// How wide a label is.

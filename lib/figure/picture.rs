@@ -80,9 +80,11 @@ pub fn zoomed(picture: &Framebuffer, zoom: Zoom) -> Framebuffer {
 /// left free beside it.
 pub(crate) const fn block((x, y): Pixel, factor: u32, origin: Pixel) -> Rect {
     let line = if factor >= Zoom::GRID_FROM { 1 } else { 0 };
-    let factor = factor as i32;
-    let (left, bottom) = (origin.0 + x * factor, origin.1 + y * factor);
-    Rect { left, bottom, right: left + factor - line, top: bottom + factor - line }
+    let factor = if factor < i32::MAX as u32 { factor as i32 } else { i32::MAX };
+    let left = origin.0.saturating_add(x.saturating_mul(factor));
+    let bottom = origin.1.saturating_add(y.saturating_mul(factor));
+    let (right, top) = (left.saturating_add(factor - line), bottom.saturating_add(factor - line));
+    Rect { left, bottom, right, top }
 }
 
 /// A part of a picture, each pixel as a block, with a thin grid if the blocks are large enough.
@@ -126,8 +128,10 @@ pub fn draw_enlarged_within(
     let mut screen = Framebuffer::new(width, height);
     let (columns, rows) = (part.columns().len() as u32, part.rows().len() as u32);
     let factor = (columns / width).min(rows / height).max(1);
-    let middle = |side: u32, shown: u32| (side as i32 - (shown * factor) as i32).div_euclid(2);
-    let origin = (part.left + middle(columns, width), part.bottom + middle(rows, height));
+    // At most the half of 2³², so it is an `i32`.
+    let middle = |side: u32, shown: u32| (i64::from(side) - i64::from(shown * factor)).div_euclid(2) as i32;
+    let origin =
+        (part.left.saturating_add(middle(columns, width)), part.bottom.saturating_add(middle(rows, height)));
 
     let observer = into.observer();
     screen.set_observer(observer.clone());

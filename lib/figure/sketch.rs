@@ -48,35 +48,38 @@ impl<'a> Sketch<'a> {
         Self { part, ..self }
     }
 
-    /// A line between two points, at least a pixel wide.
+    /// A line between two points, at least a pixel wide; none if they are the same, or as far away as
+    /// [`Self::triangle`] does not draw.
     pub fn line(&mut self, a: DVec2, b: DVec2, width: f64, color: Color) {
         for triangle in stroke([a, b], width.max(1.0 / self.fit.scale)) {
             self.triangle(triangle, color);
         }
     }
 
-    /// A triangle: the pixels whose centers are inside.
+    /// A triangle: the pixels whose centers are inside. None if a vertex is not finite, or farther than 65,536 pixels from
+    /// the lower left one of the picture.
     pub fn triangle(&mut self, triangle: [DVec2; 3], color: Color) {
         let Some(coverage) = Coverage::new(triangle.map(|vertex| self.fit.at(vertex))) else { return };
         let scissor = self.framebuffer.scissor().within(self.part);
         coverage.pixels(scissor).for_each(|(x, y, _)| self.framebuffer.set(x, y, color));
     }
 
-    /// A disk around a point.
+    /// A disk around a point: the pixels whose centers are no farther from it than the radius; none if that is negative.
     pub fn dot(&mut self, center: DVec2, radius: f64, color: Color) {
         let (center, radius) = (self.fit.at(center), radius * self.fit.scale);
         let [(left, bottom), (right, top)] = [center - radius, center + radius].map(pixel);
-        let around = Rect { left, bottom, right: right + 1, top: top + 1 };
+        let around = Rect { left, bottom, right: right.saturating_add(1), top: top.saturating_add(1) };
         let around = around.intersection(self.framebuffer.rect()).intersection(self.part);
         for (x, y) in around.pixels() {
             let pixel = dvec2(f64::from(x) + 0.5, f64::from(y) + 0.5);
-            if pixel.distance_squared(center) <= radius * radius {
+            if radius >= 0.0 && pixel.distance_squared(center) <= radius * radius {
                 self.framebuffer.set(x, y, color);
             }
         }
     }
 
-    /// A rectangle from its lower left to its upper right vertex, its borders on whole pixels.
+    /// A rectangle from its lower left to its upper right vertex, its borders on whole pixels; one that is not a number
+    /// is 0.
     pub fn bar(&mut self, lower_left: DVec2, upper_right: DVec2, color: Color) {
         let border = |point| pixel(self.fit.at(point).round());
         let [(left, bottom), (right, top)] = [lower_left, upper_right].map(border);
@@ -84,13 +87,17 @@ impl<'a> Sketch<'a> {
         self.framebuffer.fill(bar.intersection(self.part), color);
     }
 
-    /// A number, its middle at a point.
+    /// A number, its middle at a point, each dot of a digit at least a pixel.
     pub fn number(&mut self, number: u32, middle: DVec2, color: Color) {
         let text = number.to_string();
         let dot = (f64::from(DOT) * self.fit.scale).round().max(1.0) as i32;
-        let [width, height] = [label_width(&text), LABEL_HEIGHT].map(|length| length / DOT * dot);
+        let half = |length: i32| (length / DOT).saturating_mul(dot) / 2;
         let (x, y) = pixel(self.fit.at(middle).round());
-        digits(self.framebuffer, &text, (x - width / 2, y - height / 2), dot, color);
+        let [left, bottom] =
+            [(x, label_width(&text)), (y, LABEL_HEIGHT)].map(|(at, length)| at.saturating_sub(half(length)));
+        for square in digits(&text, (left, bottom), dot) {
+            self.framebuffer.fill(square.intersection(self.part), color);
+        }
     }
 }
 
@@ -99,7 +106,8 @@ fn pixel(point: DVec2) -> Pixel {
     (point.x.floor() as i32, point.y.floor() as i32)
 }
 
-/// The two triangles that a line of some width is made of; its ends are cut off at right angles.
+/// The two triangles that a line of some width is made of; its ends are cut off at right angles. Without area if the points
+/// are the same, or so near or far that the square of their distance is 0 or infinite.
 ///
 /// ```text
 ///      ┌──────────────┐ ┐
@@ -156,6 +164,13 @@ mod tests {
         // Half the size: each dot of a digit is a pixel.
         let seven = drawn([24.0, 16.0], |sketch| sketch.number(7, dvec2(12.0, 8.0), Color::WHITE));
         assert_eq!((seven[1].as_str(), seven[5].as_str()), (".....###....", "......#....."));
+    }
+
+    #[test]
+    fn a_dot_of_a_negative_radius_is_none() {
+        let dot =
+            |radius| drawn([12.0, 8.0], |sketch| sketch.dot(dvec2(3.5, 4.5), radius, Color::WHITE)).concat();
+        assert_eq!([0.3, 0.0, -0.3].map(|radius| dot(radius).matches('#').count()), [1, 1, 0]);
     }
 
     #[test]

@@ -21,7 +21,8 @@ pub fn heat_legend() -> String {
     format!("how often each pixel was written: {}", colors.join(", "))
 }
 
-/// The picture with a strip below it: a swatch of each color and how many writes it stands for.
+/// The picture with a strip below it: a swatch of each color and how many writes it stands for; the picture alone, if with
+/// the strip it would be too high for a framebuffer.
 #[must_use]
 pub fn with_legend(picture: Framebuffer) -> Framebuffer {
     let last = HEAT.len() - 1;

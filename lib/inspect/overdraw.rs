@@ -22,15 +22,19 @@ pub(super) const HEAT: [(Color, &str); 7] = [
 ];
 
 /// Draws a variant and counts how often each pixel was written: as colors, and what the colors mean, a line each.
+///
+/// # Panics
+/// As [`Framebuffer::new`] does.
 #[must_use]
 pub fn overdraw(variant: &Variant, options: &DrawOptions<'_>) -> (Framebuffer, Vec<String>) {
     let (width, height) = options.size;
-    let screen = Rect::sized(width, height);
+    // Before anything is multiplied: it refuses sizes that are too large.
+    let mut picture = Framebuffer::new(width, height);
+    let screen = picture.rect();
     let counts = vec![0; width as usize * height as usize];
     let counter = Arc::new(Counter { screen, counts: Mutex::new(Counts { enlargement: None, counts }) });
     let _ = variant.draw(&DrawOptions { observer: Some(counter.clone()), ..options.clone() });
 
-    let mut picture = Framebuffer::new(width, height);
     let mut totals = [0_usize; HEAT.len()];
     for ((x, y), &count) in screen.pixels().zip(&counter.lock().counts) {
         totals[usize::from(count)] += 1;

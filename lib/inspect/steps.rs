@@ -85,7 +85,8 @@ pub struct TooManySteps {
 impl TooManySteps {
     /// A picture of this size has too many steps, and would have few enough with `part` of its pixels.
     fn of((width, height): (u32, u32), part: f64) -> Self {
-        let side = |side: u32| ((f64::from(side) * part.sqrt()) as u32).max(1);
+        let most = Framebuffer::MAX_SIDE;
+        let side = |side: u32| ((f64::from(side.min(most)) * part.sqrt()) as u32).max(1);
         Self { fitting: (side(width), side(height)) }
     }
 }
@@ -306,9 +307,9 @@ impl Steps {
 
     fn within(most: usize, variant: &Variant, options: &DrawOptions<'_>) -> Result<Self, TooManySteps> {
         let size = options.size;
-        let needed = 2 * size.0 as usize * size.1 as usize;
-        if needed > most {
-            return Err(TooManySteps::of(size, most as f64 / needed as f64));
+        let needed = 2.0 * f64::from(size.0) * f64::from(size.1);
+        if needed > most as f64 {
+            return Err(TooManySteps::of(size, most as f64 / needed));
         }
         let recorder = Arc::new(Recorder::new(most));
         let last = variant.draw(&DrawOptions { observer: Some(recorder.clone()), ..options.clone() });

@@ -1,7 +1,7 @@
 //! Beyond the book: which pixels a triangle covers, and several samples in a pixel.
 
 use glam::dvec2;
-use rasterbook::exact::edge::{Coverage, SUBPIXELS, center, snap};
+use rasterbook::exact::edge::{Coverage, EdgeFunction, SUBPIXELS, center, snap};
 use rasterbook::exact::samples::{GRID_2X2, GRID_4X4, ROTATED_4};
 
 use super::*;
@@ -35,6 +35,15 @@ proptest! {
             let snapped = snap(vertex);
             assert_eq!(snapped.is_some(), vertex.abs().max_element() <= 65_536.0 && !vertex.is_nan());
             assert!(snapped.is_none_or(|vertex| vertex.iter().all(|c| c.abs() <= 1 << 24)));
+        }
+        let [a, b, _] = triangle.map(snap);
+        if let (Some(a), Some(b)) = (a, b) {
+            let [there, back] = [EdgeFunction::new(a, b), EdgeFunction::new(b, a)];
+            assert_eq!([there.at(a), there.at(b), back.at(a)], [0; 3]);
+            // A point on an edge belongs to one of two neighbors; without length there is no edge.
+            assert_eq!(there.is_top_left() != back.is_top_left(), a != b);
+            assert!(there.covers(0) == there.is_top_left() && there.covers(1) && !there.covers(-1));
+            assert!(there.covers(i64::MAX) && !there.covers(i64::MIN));
         }
         // Edge functions are exact so far.
         let (end, [left, bottom]) = (1 << 28, [rect.left >> 4, rect.bottom >> 4]);
