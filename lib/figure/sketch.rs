@@ -151,6 +151,8 @@ mod tests {
         let dot = drawn([12.0, 8.0], |sketch| sketch.dot(dvec2(6.0, 4.0), 2.0, Color::WHITE));
         let expected = [".....##.....", "....####....", "....####....", ".....##....."];
         assert_eq!(dot[2..6], expected);
+        let one = drawn([12.0, 8.0], |sketch| sketch.dot(dvec2(6.5, 4.5), 0.9, Color::WHITE));
+        assert_eq!((one[3].as_str(), one.concat().matches('#').count()), ("......#.....", 1));
         let half = drawn([24.0, 16.0], |sketch| sketch.dot(dvec2(12.0, 8.0), 4.0, Color::WHITE));
         assert_eq!(half, dot, "the scene's radius");
         // From 4.3 to 8.7, and from 2.3 to 6.7: its last column and row, too.
@@ -171,6 +173,38 @@ mod tests {
         let dot =
             |radius| drawn([12.0, 8.0], |sketch| sketch.dot(dvec2(3.5, 4.5), radius, Color::WHITE)).concat();
         assert_eq!([0.3, 0.0, -0.3].map(|radius| dot(radius).matches('#').count()), [1, 1, 0]);
+    }
+
+    #[test]
+    fn a_line_is_two_triangles_with_right_angles() {
+        let [a, b] = [dvec2(1.0, 2.0), dvec2(4.0, 6.0)];
+        // Five long, and 2.5 to each side.
+        let aside = dvec2(-2.0, 1.5);
+        let expected = [[a - aside, b - aside, b + aside], [a - aside, b + aside, a + aside]];
+        let near = |(a, b): (&DVec2, &DVec2)| a.distance(*b) < 1e-12;
+        let stroke = stroke([a, b], 5.0);
+        assert!(stroke.as_flattened().iter().zip(expected.as_flattened()).all(near), "{stroke:?}");
+    }
+
+    #[test]
+    fn the_middle_of_a_number_is_where_it_should_be() {
+        let box_of = |scale: f64| {
+            let mut picture = Framebuffer::new(40, 30);
+            let fit = Fit::new(picture.rect(), [40.0 / scale, 30.0 / scale]);
+            Sketch::new(&mut picture, fit).number(20, dvec2(20.0, 15.0) / scale, Color::WHITE);
+            let inked = |&(x, y): &Pixel| picture.get(x, y) == Some(Color::WHITE);
+            let inked: Vec<Pixel> = picture.rect().pixels().filter(inked).collect();
+            let ends = |of: fn(&Pixel) -> i32| [inked.iter().map(of).min(), inked.iter().map(of).max()];
+            [ends(|pixel| pixel.0), ends(|pixel| pixel.1)].map(|ends| ends.map(|end| end.expect("ink")))
+        };
+        // Two digits of three columns and five rows with a column between them, each dot a pixel, two, or four.
+        let [columns, rows] = [label_width("20"), LABEL_HEIGHT].map(|length| length / DOT);
+        for (scale, dot) in [(0.5, 1), (1.0, 2), (2.0, 4)] {
+            let [width, height] = [columns * dot, rows * dot];
+            let from = [20 - width / 2, 15 - height / 2];
+            let expected = [[from[0], from[0] + width - 1], [from[1], from[1] + height - 1]];
+            assert_eq!(box_of(scale), expected, "{scale}");
+        }
     }
 
     #[test]
