@@ -44,11 +44,15 @@ impl<'a> Scene<'a> {
     /// # Errors
     /// As [`Variant::subject`].
     pub fn new(variant: &'a Variant, given: &Given) -> Result<Self, FileError> {
-        let subject = variant.subject_with(given.style)?.map(|own| match &given.model {
+        let subject = match &given.model {
+            Some(model) if variant.has_model() => {
+                Some(Subject { model: model.clone(), texture: given.texture.clone() })
+            }
             // The chapters' own models are where they should be, and have their own texture.
-            None => Subject { texture: given.texture.clone().or(own.texture), ..own },
-            Some(model) => Subject { model: model.clone(), texture: given.texture.clone() },
-        });
+            _ => variant
+                .subject_with(given.style)?
+                .map(|own| Subject { texture: given.texture.clone().or(own.texture), ..own }),
+        };
         let DrawOptions { size, frame, rasterizer, knobs, .. } = variant.options(None);
         Ok(Self { variant, knobs, frame, size, rasterizer, subject })
     }

@@ -561,15 +561,19 @@ mod tests {
     fn libraries_have_a_largest_size_together() {
         let texts = [b"newmtl a\n".as_slice(), b"newmtl b\n"];
         let folder = Folder::new("libraries", &[("a.mtl", texts[0]), ("b.mtl", texts[1])]);
-        let (model, statements) = (folder.0.join("a.obj"), [(1, b"a.mtl b.mtl".to_vec())]);
-        let of_both = texts.concat().len() as u64;
-        let within = |left| {
+        let (model, of_both) = (folder.0.join("a.obj"), texts.concat().len() as u64);
+        let within = |left, names: &[u8]| {
             let mut warnings = Warnings::new();
-            let materials = Materials::load_within(&model, &statements, left, &mut warnings);
+            let materials = Materials::load_within(&model, &[(1, names.to_vec())], left, &mut warnings);
             (materials.list.len(), warnings.len())
         };
-        assert_eq!(within(of_both), (2, 0));
-        assert_eq!(within(of_both - 1), (1, 1), "the second is left out");
+        assert_eq!(within(of_both, b"a.mtl b.mtl"), (2, 0));
+        assert_eq!(within(of_both - 1, b"a.mtl b.mtl"), (1, 1), "the second is left out");
+        let by_another_name = format!("../{}/a.mtl", folder.0.file_name().expect("one").display());
+        for again in ["a.mtl", "b.mtl a.mtl", &by_another_name] {
+            let names = format!("a.mtl b.mtl {again}");
+            assert_eq!(within(of_both, names.as_bytes()), (2, 0), "each is read once: {names}");
+        }
     }
 
     #[test]

@@ -75,6 +75,7 @@ impl Request {
         let matches =
             command.try_get_matches_from_mut(arguments).map_err(|error| explained(error, &command))?;
         refuse_form_without_report(&matches, &mut command)?;
+        refuse_knob_twice(&matches, &mut command)?;
         let text = |id: &str| matches.get_one::<String>(id).cloned();
         Ok(Self {
             list: matches.get_flag("list"),
@@ -134,6 +135,21 @@ fn refuse_form_without_report(matches: &ArgMatches, command: &mut Command) -> Re
     if is_told && !matches.contains_id("inspect") && !matches.get_flag("list") {
         let reason = "--verbose and --format are for a report: give --inspect X,Y, or --list with --format";
         return Err(command.error(ErrorKind::MissingRequiredArgument, reason));
+    }
+    Ok(())
+}
+
+/// A knob has one value: what is short for setting it means nothing beside `--set` or `--sweep`.
+fn refuse_knob_twice(matches: &ArgMatches, command: &mut Command) -> Result<(), clap::Error> {
+    let set = matches.get_many::<String>("set").into_iter().flatten();
+    let set = set.filter_map(|setting| setting.split_once('=')).map(|(name, _)| ("set", name));
+    let swept = matches.get_one::<String>("sweep").map(|name| ("sweep", name.as_str()));
+    for (option, name) in set.chain(swept) {
+        let is_same = |(short, knobs): &&(&str, &[&str])| matches.contains_id(short) && knobs.contains(&name);
+        if let Some((short, _)) = SHORT.iter().find(is_same) {
+            let reason = format!("--{short} and --{option} both set '{name}': give one of them");
+            return Err(command.error(ErrorKind::ArgumentConflict, reason));
+        }
     }
     Ok(())
 }

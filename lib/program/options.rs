@@ -207,7 +207,9 @@ fn moving(chapter: &Chapter) -> [Arg; 3] {
 fn what_to_tell() -> [Arg; 4] {
     [
         switch("overdraw", "Draw how often each pixel is written")
-            .conflicts_with_all(["all", "animate", "compare", "inspect", "steps"]),
+            .conflicts_with_all(["all", "animate", "compare", "inspect", "steps"])
+            // What color is written makes no difference.
+            .conflicts_with_all(["texture", "flat", "light", "background"]),
         option("inspect", "X,Y", "Print all that happened at the pixel (X, Y), y up from the bottom")
             .value_parser(parse_pixel)
             .conflicts_with_all(["all", "animate", "compare", "zoom", "out"]),

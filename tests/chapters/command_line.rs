@@ -1,11 +1,13 @@
 //! The command line that all programs share: what is written, what is said, and with which exit code.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
 use crate::chapters::CHAPTERS;
 use rasterbook::figure::{Chapter, Mistake, Variant};
 use rasterbook::program::PROGRAMS;
+use rasterbook::{Color, Framebuffer};
 
 /// An empty folder of its own for one test.
 fn folder(name: &str) -> PathBuf {
@@ -779,4 +781,106 @@ fn of_two_options_both_are_used_or_the_pair_is_refused() {
         }
     }
     assert!(accepted > 30, "{accepted} pairs are accepted");
+}
+
+/// An exit code; files, each with its folder; and what was printed, if there are none.
+type Outcome = (Option<i32>, Vec<(PathBuf, Vec<u8>)>, Vec<u8>);
+
+/// What a run of the last chapter's program gave, and what it said.
+fn told_outcome(folder: &Path, arguments: &[&str]) -> (Outcome, String) {
+    let _ = std::fs::remove_dir_all(folder);
+    std::fs::create_dir_all(folder).expect("a folder");
+    let output = last(folder, arguments);
+    // Not their names, in which what is given stands in any case.
+    let read = |path: PathBuf| (path.with_file_name(""), std::fs::read(&path).expect("there"));
+    let written: Vec<_> = written_below(folder).into_iter().map(read).collect();
+    let printed = if written.is_empty() { output.stdout } else { Vec::new() };
+    ((output.status.code(), written, printed), text(&output.stderr))
+}
+
+/// The options of models, animations and the pipeline, and then all others.
+const OF_MODELS: &[&[&str]] = &[
+    &["--animate"],
+    &["--frame", "40"],
+    &["--model", "../given/tip.obj"],
+    &["--texture", "../given/dots.png"],
+    &["--as-is"],
+    &["--flat"],
+    &["--eye", "10,20"],
+    &["--light", "60,10"],
+    &["--background", "203040"],
+    &["--rasterizer", "scanline"],
+    &["--set", "azimuth=70"],
+    &["--size", "12x9"],
+    &["--zoom", "2"],
+    &["--compare", "turntable"],
+    &["--sweep", "azimuth"],
+    &["--steps"],
+    &["--overdraw"],
+    &["--inspect", "4,3"],
+    &["--verbose"],
+    &["--format", "json"],
+    &["--out", "elsewhere/"],
+    &["--show=blocks"],
+    &["--knobs"],
+    &["--list"],
+    &["--all"],
+    &["--window"],
+];
+/// So many of them are new here: with the others alone the pairs are those of the test above.
+const NEW: usize = 10;
+
+/// A run with some options of a pair, which says by itself what variant and what model can have both.
+fn run_of_pair(folder: &Path, pair: [&[&str]; 2], options: &[&[&str]]) -> (Outcome, String) {
+    let is_any = |names: &[&str]| options.iter().any(|option| names.contains(&option[0]));
+    let mut arguments: Vec<&str> = options.concat();
+    if !is_any(&["--all", "--list"]) {
+        arguments.insert(0, if has(pair, "--as-is") { "exact" } else { "turntable" });
+    }
+    if !has(pair, "--model") && !is_any(&["--all", "--list", "--knobs"]) {
+        arguments.extend(OF_MODELS[2]);
+    }
+    if !is_any(&["--size", "--list", "--knobs"]) {
+        arguments.extend(["--size", "8x6"]);
+    }
+    told_outcome(folder, &arguments)
+}
+
+fn has(pair: [&[&str]; 2], name: &str) -> bool {
+    pair.iter().any(|option| option[0] == name)
+}
+
+#[test]
+fn beside_an_option_of_models_or_animations_any_other_is_used_or_refused() {
+    let (folder, given) = (folder("pairs_of_models"), folder("given"));
+    // A tip towards us, smaller than the view and not in its middle.
+    let tip = "v -1 -1 -4\nv 1 -1 -4\nv 0 1 -4\nv 0.2 0 -3\nvt 0 0\nvt 4 0\nvt 2 4\nvt 2 2\n\
+               f 1/1 3/3 2/2\nf 1/1 2/2 4/4\nf 2/2 3/3 4/4\nf 3/3 1/1 4/4\n";
+    std::fs::write(given.join("tip.obj"), tip).expect("written");
+    let mut dots = Framebuffer::new(4, 4);
+    [(0, 0), (1, 2), (3, 1)].iter().for_each(|&(x, y)| dots.set(x, y, Color::RED));
+    dots.save(given.join("dots.png")).expect("written");
+
+    let mut known = BTreeMap::new();
+    let mut accepted = 0;
+    for (i, &first) in OF_MODELS.iter().enumerate().take(NEW) {
+        for &second in &OF_MODELS[i + 1..] {
+            let pair = [first, second];
+            let (both, said) = run_of_pair(&folder, pair, &pair);
+            if both.0 == Some(0) {
+                accepted += 1;
+                let base = ["--as-is", "--model"].map(|name| has(pair, name));
+                for (option, other) in [(first, second), (second, first)] {
+                    let alone = || run_of_pair(&folder, pair, &[option]).0;
+                    let single = known.entry((base, option)).or_insert_with(alone);
+                    assert!(both != *single, "{other:?} is ignored beside {option:?}");
+                }
+            } else {
+                assert_eq!((both.0, both.1.len()), (Some(2), 0), "{pair:?}: {said}");
+                let is_named = |option: &&[&str]| option.iter().any(|word| said.contains(word));
+                assert!(pair.iter().any(is_named), "{pair:?}: {said}");
+            }
+        }
+    }
+    assert!(accepted > 100, "{accepted} pairs are accepted");
 }

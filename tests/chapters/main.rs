@@ -1,5 +1,7 @@
 //! Everything that is tested with the chapters' own tables. One program, since each contains all chapters.
 
+#[path = "../fuzz/src/arguments.rs"]
+mod arguments;
 mod artefacts;
 mod chapters;
 mod command_line;

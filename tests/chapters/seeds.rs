@@ -1,7 +1,9 @@
 //! The targets of fuzzing, as plain tests: what was found and kept as a corpus, and bytes from a fixed seed.
 
 use std::path::Path;
+use std::process::Command;
 
+use crate::arguments;
 use crate::chapters::CHAPTERS;
 use crate::fuzz;
 use rasterbook::figure::Chapter;
@@ -78,4 +80,28 @@ fn polygons() {
 fn histories() {
     let chapters = chapters();
     play("history", 48, 200, |data| fuzz::history(&chapters, data));
+}
+
+#[test]
+fn command_lines() {
+    // What the programs say goes past the output that a test keeps, so another process plays them.
+    let itself = std::env::current_exe().expect("a path");
+    let played = Command::new(itself).args(["--exact", "seeds::command_lines_aloud", "--ignored"]).output();
+    let played = played.expect("it starts");
+    let said = [played.stdout, played.stderr].map(|said| String::from_utf8_lossy(&said).into_owned());
+    let end = said.each_ref().map(|said| said.lines().rev().take(20).collect::<Vec<_>>());
+    assert!(played.status.success() && said[0].contains("1 passed"), "the last lines, backwards: {end:#?}");
+    // Lists, help and refusals were among them, and no character of an argument moved a cursor.
+    for part in ["\"variants\":", "Usage: cargo run", "has no variant", "unexpected argument"] {
+        assert!(said.iter().any(|said| said.contains(part)), "nobody said {part}");
+    }
+    let is_odd = |c: char| c.is_control() && !c.is_whitespace();
+    assert!(!said.iter().any(|said| said.contains(is_odd)), "what is said has control characters");
+}
+
+#[test]
+#[ignore = "talks much: `command_lines` plays it"]
+fn command_lines_aloud() {
+    let chapters = chapters();
+    play("arguments", 800, 60, |data| arguments::arguments(&chapters, data));
 }
