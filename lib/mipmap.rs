@@ -93,19 +93,23 @@ impl MipMaps {
     ///
     /// Source: Direct3D 11.3 functional specification, 7.18.11.
     #[must_use]
+    #[inline(always)]
     pub fn level_of_detail<R: Real>(&self, uv_dx: [R; 2], uv_dy: [R; 2]) -> R {
-        let [width, height, _] = map3(self.levels[0], R::of);
-        let length = |way: [R; 2]| {
-            let [x, y] = [way[0] * width, way[1] * height];
+        #[inline(always)]
+        fn length<R: Real>([x, y]: [R; 2]) -> R {
             (x * x + y * y).sqrt()
-        };
-        let texels = length(uv_dx).max(length(uv_dy));
+        }
+        let [width, height, _] = map3(self.levels[0], R::of);
+        let right = length([uv_dx[0] * width, uv_dx[1] * height]);
+        let up = length([uv_dy[0] * width, uv_dy[1] * height]);
+        let texels = right.max(up);
         let last = R::of((self.count() - 1) as f64);
         texels.map(libm::log2).max(R::of(0.0)).min(last)
     }
     // ANCHOR_END: level_of_detail
 
     /// A level that there is: the last one for all beyond it, the first one for all before it and for NaN.
+    #[inline(always)]
     fn clamped<R: Real>(&self, level: R) -> R {
         level.max(R::of(0.0)).min(R::of((self.count() - 1) as f64))
     }
@@ -113,17 +117,23 @@ impl MipMaps {
     /// Bilinear in the level nearest to `level`, as channels in 0..=255: levels meet in lines. Levels beyond the last
     /// are the last.
     #[must_use]
+    #[inline(always)]
     pub fn bilinear<R: Real>(&self, uv: [R; 2], level: R, mode: AddressMode) -> [R; 3] {
         let level = (self.clamped(level) + R::of(0.5)).floor();
         let [width, height, below] = R::gather(level, R::of(0.0), |level, _| self.levels[level]);
-        bilinear(uv, [width, height], mode, |column, row| {
-            R::channels(R::gather_color(column, below + row, self.row_bits, &self.texels))
-        })
+        bilinear(
+            uv,
+            [width, height],
+            mode,
+            #[inline(always)]
+            |column, row| R::channels(R::gather_color(column, below + row, self.row_bits, &self.texels)),
+        )
     }
 
     /// Bilinear in the two levels around `level`, and linear between them: no line shows. Levels beyond the last are the
     /// last.
     #[must_use]
+    #[inline(always)]
     pub fn trilinear<R: Real>(&self, uv: [R; 2], level: R, mode: AddressMode) -> [R; 3] {
         let level = self.clamped(level);
         let [low, high] = [level.floor(), self.clamped(level.floor() + R::of(1.0))];

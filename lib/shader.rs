@@ -64,8 +64,9 @@ pub trait Shader<const N: usize>: Sync {
     /// Whether fragments are shaded for the processor that a program runs on, and not only for those that it is compiled for.
     ///
     /// Say `true` if [`Self::fragment`] and all functions and closures that it calls with generic numbers are
-    /// `#[inline(always)]`, as those of this library are; `map` of arrays is not, but [`each`](crate::real::each) is. What is not
-    /// inlined then takes ten times as long, for each operation is a call. The picture is the same in any case.
+    /// `#[inline(always)]`, as those of [`light`](crate::light), [`mipmap`](crate::mipmap), [`srgb`](crate::srgb) and
+    /// [`texture`](crate::texture) are; `map` of arrays is not, but [`each`](crate::real::each) is. What is not inlined then
+    /// takes ten times as long, for each operation is a call. The picture is the same in any case.
     const IS_INLINED: bool = false;
 
     /// Whether fragments are shaded by [`Self::fragment_with_derivatives`].

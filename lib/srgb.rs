@@ -49,15 +49,19 @@ static STEPS: LazyLock<[u8; 4096]> =
 
 /// Stored channels, whole numbers in 0..=255 → light in 0..=1. Fractions are cut off, values outside clamped.
 #[must_use]
-#[inline]
+#[inline(always)]
 pub fn decode<R: Real>(stored: [R; 3]) -> [R; 3] {
     let light: &[f64; 256] = &LIGHT;
-    map3(stored, |channel| channel.map(|value| light[usize::from(value as u8)]))
+    map3(
+        stored,
+        #[inline(always)]
+        |channel| channel.map(|value| light[usize::from(value as u8)]),
+    )
 }
 
 /// Light, 0..=1 → the nearest stored channels, whole numbers in 0..=255; more light than 1 gives 255, NaN 0.
 #[must_use]
-#[inline]
+#[inline(always)]
 pub fn encode<R: Real>(light: [R; 3]) -> [R; 3] {
     let (steps, borders): (&[u8; 4096], &[f64; 255]) = (&STEPS, &BORDERS);
     let value = |amount: f64| {
@@ -65,7 +69,11 @@ pub fn encode<R: Real>(light: [R; 3]) -> [R; 3] {
         let is_next = borders.get(usize::from(value)).is_some_and(|&border| border <= amount);
         f64::from(value) + f64::from(u8::from(is_next))
     };
-    map3(light, |amount| amount.map(value))
+    map3(
+        light,
+        #[inline(always)]
+        |amount| amount.map(value),
+    )
 }
 
 #[cfg(test)]

@@ -16,8 +16,10 @@ use rasterbook::depth::{DepthBuffer, DepthEncoding, DepthTest};
 use rasterbook::exact::Exact;
 use rasterbook::interpolate::Interpolation;
 use rasterbook::merge::{Blend, Merge};
+use rasterbook::mipmap::MipMaps;
 use rasterbook::real::each;
 use rasterbook::shader::Paint;
+use rasterbook::srgb::{decode, encode};
 use rasterbook::texture::{AddressMode, Texture};
 use rasterbook::tiled::{Instructions, Tiled};
 use rasterbook::transform::Viewport;
@@ -444,6 +446,54 @@ fn any_number_of_varyings() {
     check::<6>(&mesh);
     check::<7>(&mesh);
     check::<15>(&mesh);
+}
+
+/// Filters that need derivatives, and the tables of sRGB.
+struct Mipped(MipMaps);
+
+impl Shader<5> for Mipped {
+    type Attributes = Record;
+    const IS_INLINED: bool = true;
+    const USES_DERIVATIVES: bool = true;
+
+    fn vertex(&self, &(position, varyings): &Record) -> ClipVertex<5> {
+        ClipVertex { position, varyings }
+    }
+
+    #[inline(always)]
+    fn fragment<R: Real>(&self, [.., u, v]: [R; 5]) -> Shaded<R> {
+        Shaded::opaque(self.0.bilinear([u, v], R::of(0.0), AddressMode::Repeat))
+    }
+
+    #[inline(always)]
+    fn fragment_with_derivatives<R: Real>(&self, [.., u, v]: [R; 5], change: Derivatives<R, 5>) -> Shaded<R> {
+        let [.., u_dx, v_dx] = change.dx;
+        let [.., u_dy, v_dy] = change.dy;
+        let level = self.0.level_of_detail([u_dx, v_dx], [u_dy, v_dy]);
+        let linear = decode(self.0.trilinear([u, v], level, AddressMode::Repeat));
+        let lines = decode(self.0.bilinear([u, v], level, AddressMode::Clamp));
+        let mixed = each(
+            linear,
+            #[inline(always)]
+            |k, light| (light + lines[k]) * R::of(0.5),
+        );
+        Shaded::opaque(encode(mixed))
+    }
+}
+
+#[test]
+fn mip_maps_and_srgb() {
+    let mut next = numbers(31);
+    // Texture coordinates from much less than a texel a pixel to much more.
+    let records = (0..600)
+        .map(|i| {
+            let size = [0.05, 0.5, 2.0][i / 3 % 3];
+            let place = dvec4(next() * size - 0.5, next() * size - 0.5, next() - 0.5, 1.0 + next());
+            (place, from_fn(|_| next() * [0.02, 1.0, 40.0][i / 9 % 3]))
+        })
+        .collect();
+    let mesh = Mesh::unindexed(records).expect("whole triangles");
+    compare(&mesh, &Mipped(MipMaps::new(&texture())), &RenderState::default(), (200, 90));
 }
 
 #[test]

@@ -190,7 +190,10 @@ fn five_scenes(options: &Options) -> Result<(), Box<dyn Error>> {
         }
     }
     times.notes.push(format!("medians of {} interleaved rounds; {}", options.rounds, machine::description()));
-    times.notes.extend(about_other);
+    memory.notes.push(machine::description());
+    for table in [&mut times, &mut memory] {
+        table.notes.extend(about_other.clone());
+    }
     say(&format!("\n{times}\n{memory}"))?;
     options.save("table.svg", &chart::table(&times))?;
     options.save("memory.svg", &chart::table(&memory))
