@@ -340,7 +340,8 @@ pub fn about(pivot: DVec3, transformation: DMat4) -> DMat4 {
 ///
 /// The eye is subtracted, not the target: the eye becomes the origin. Left-handed. Not finite if
 /// `up` points along the line of sight, to within 10⁻¹² of a full angle: what is left of it then
-/// comes from rounding. Source: second and fourth note (world to view space).
+/// comes from rounding. Nor if the square of its length is 0 or infinite, as for lengths of 10⁻²⁰⁰
+/// and 10²⁰⁰. Source: second and fourth note (world to view space).
 #[must_use]
 pub fn look_at(eye: DVec3, target: DVec3, up: DVec3) -> DMat4 {
     let forward = (target - eye).normalize();
@@ -549,6 +550,9 @@ mod tests {
             }
             let beside = look_at(eye, eye + dvec3(x, y, z) * 3.7, up + dvec3(-y, x, 0.0) * 1e-6);
             assert!(beside.is_finite());
+            let sized = |size: f64| look_at(eye, eye + dvec3(x, y, z) * 3.7, dvec3(y, -x, 1.0) * size);
+            assert!([1e-150, 1e150].map(sized).iter().all(|view| view.is_finite()));
+            assert!(![1e-200, 1e200].map(sized).iter().any(|view| view.is_finite()));
         }
     }
 

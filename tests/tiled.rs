@@ -545,8 +545,12 @@ fn what_lies_beyond_a_plane_as_a_whole() {
     compare(&bare(near), &Counted::default(), &state, (1, 2));
     // The divide turns the near plane round for the second: what seems to be beyond it is not, once the top has cut.
     let seemingly = [[0.0, 0.5, -1.0, 0.4], [0.5, 0.0, 175.0, -1.0], [0.0, 0.0, -260.0, 2.0]];
-    let state = RenderState { clip_test: ClipTest::AfterDivide, ..state };
-    compare(&bare(seemingly), &Counted::default(), &state, (8, 16));
+    let after = RenderState { clip_test: ClipTest::AfterDivide, ..state };
+    compare(&bare(seemingly), &Counted::default(), &after, (8, 16));
+    // A vertex at the eye, and far to the left.
+    let at_the_eye = [[0.0, 0.0, -4.4, 1.0], [-6.1e298, 0.0, -2.1e37, 0.0], [1.0, 1.0, -6.9, 2.0]];
+    let state = RenderState { depth_encoding: DepthEncoding::ViewZ, ..state };
+    compare(&bare(at_the_eye), &Counted::default(), &state, (1, 2));
 }
 
 #[test]
