@@ -715,10 +715,14 @@ fn a_model_that_is_not_seen_is_told_of() {
     assert_eq!(told("turntable", "away.obj"), "", "it draws both sides");
 }
 
-/// What a run gave: its exit code, what it printed, and the files that it wrote.
-fn outcome(folder: &Path, arguments: &[&str]) -> (Option<i32>, Vec<u8>, Vec<Vec<u8>>) {
+fn empty(folder: &Path) {
     let _ = std::fs::remove_dir_all(folder);
     std::fs::create_dir_all(folder).expect("a folder");
+}
+
+/// What a run gave: its exit code, what it printed, and the files that it wrote.
+fn outcome(folder: &Path, arguments: &[&str]) -> (Option<i32>, Vec<u8>, Vec<Vec<u8>>) {
+    empty(folder);
     let output = run_in(folder, arguments);
     let written: Vec<Vec<u8>> =
         written_below(folder).iter().map(|path| std::fs::read(path).expect("there")).collect();
@@ -788,8 +792,7 @@ type Outcome = (Option<i32>, Vec<(PathBuf, Vec<u8>)>, Vec<u8>);
 
 /// What a run of the last chapter's program gave, and what it said.
 fn told_outcome(folder: &Path, arguments: &[&str]) -> (Outcome, String) {
-    let _ = std::fs::remove_dir_all(folder);
-    std::fs::create_dir_all(folder).expect("a folder");
+    empty(folder);
     let output = last(folder, arguments);
     // Not their names, in which what is given stands in any case.
     let read = |path: PathBuf| (path.with_file_name(""), std::fs::read(&path).expect("there"));
