@@ -207,7 +207,11 @@ mod tests {
     #[test]
     fn which_level_fits() {
         let maps = MipMaps::new(&ramp(8, 8));
-        let level = |x: f64, y: f64| maps.level_of_detail([x / 8.0, 0.0], [0.0, y / 8.0]);
+        let level = |x: f64, y: f64| {
+            let level = maps.level_of_detail([x / 8.0, 0.0], [0.0, y / 8.0]);
+            assert_eq!(level, maps.level_of_detail([0.0, x / 8.0], [y / 8.0, 0.0]), "along the other axis");
+            level
+        };
         assert_eq!(level(1.0, 1.0), 0.0);
         assert_eq!(level(0.01, 0.01), 0.0, "magnified");
         assert_eq!(level(2.0, 1.0), 1.0, "the longer way decides");

@@ -54,21 +54,13 @@ impl Enlargement {
     /// # Panics
     /// If the factor is 0.
     #[must_use]
-    pub const fn pixel_at(self, (x, y): Pixel) -> Pixel {
-        (self.block_at(x, self.origin.0), self.block_at(y, self.origin.1))
-    }
-
-    /// Which block a column or a row belongs to, where the first begins at `origin`.
-    const fn block_at(self, place: i32, origin: i32) -> i32 {
-        let number = (place as i64 - origin as i64).div_euclid(self.factor as i64);
+    pub fn pixel_at(self, (x, y): Pixel) -> Pixel {
         // Of blocks of one pixel there are more than numbers: the last stand for those beyond.
-        if number < i32::MIN as i64 {
-            i32::MIN
-        } else if number > i32::MAX as i64 {
-            i32::MAX
-        } else {
-            number as i32
-        }
+        let block = |place: i32, origin: i32| {
+            let number = (i64::from(place) - i64::from(origin)).div_euclid(self.factor.into());
+            number.clamp(i32::MIN.into(), i32::MAX.into()) as i32
+        };
+        (block(x, self.origin.0), block(y, self.origin.1))
     }
 }
 
@@ -283,5 +275,7 @@ mod tests {
         let at = |x, y| enlargement.pixel_at((x, y));
         assert_eq!([at(5, 7), at(14, 16), at(15, 7), at(5, 17)], [(0, 0), (0, 0), (1, 0), (0, 1)]);
         assert_eq!([at(4, 7), at(5, 6), at(28, 40)], [(-1, 0), (0, -1), (2, 3)]);
+        let far = Enlargement { factor: 1, origin: (i32::MAX, i32::MIN), ..enlargement };
+        assert_eq!(far.pixel_at((i32::MIN, i32::MAX)), (i32::MIN, i32::MAX), "farther than there are numbers");
     }
 }
