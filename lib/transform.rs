@@ -551,8 +551,8 @@ mod tests {
             let beside = look_at(eye, eye + dvec3(x, y, z) * 3.7, up + dvec3(-y, x, 0.0) * 1e-6);
             assert!(beside.is_finite());
             let sized = |size: f64| look_at(eye, eye + dvec3(x, y, z) * 3.7, dvec3(y, -x, 1.0) * size);
-            assert!([1e-150, 1e150].map(sized).iter().all(|view| view.is_finite()));
-            assert!(![1e-200, 1e200].map(sized).iter().any(|view| view.is_finite()));
+            assert!([1e-150, 1e150].map(sized).iter().all(DMat4::is_finite));
+            assert!(![1e-200, 1e200].map(sized).iter().any(DMat4::is_finite));
         }
     }
 
