@@ -276,6 +276,10 @@ mod tests {
         assert_eq!([at(5, 7), at(14, 16), at(15, 7), at(5, 17)], [(0, 0), (0, 0), (1, 0), (0, 1)]);
         assert_eq!([at(4, 7), at(5, 6), at(28, 40)], [(-1, 0), (0, -1), (2, 3)]);
         let far = Enlargement { factor: 1, origin: (i32::MAX, i32::MIN), ..enlargement };
-        assert_eq!(far.pixel_at((i32::MIN, i32::MAX)), (i32::MIN, i32::MAX), "farther than there are numbers");
+        assert_eq!(
+            far.pixel_at((i32::MIN, i32::MAX)),
+            (i32::MIN, i32::MAX),
+            "farther than there are numbers"
+        );
     }
 }
