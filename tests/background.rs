@@ -37,7 +37,16 @@ impl Shader<0> for Flat {
 
 /// A rasterizer for each set of instructions that this processor has.
 fn rasterizers() -> impl Iterator<Item = Tiled> {
-    Instructions::available().map(|instructions| Tiled::new().with_instructions(instructions))
+    Instructions::available().map(rasterizer)
+}
+
+fn rasterizer(instructions: Instructions) -> Tiled {
+    Tiled::new().with_instructions(instructions)
+}
+
+/// One of them.
+fn instructions() -> impl Strategy<Value = Instructions> {
+    prop::sample::select(Instructions::available().collect::<Vec<_>>())
 }
 
 /// What can happen to a picture.
@@ -132,41 +141,41 @@ enum Turn {
 
 proptest! {
     #[test]
-    fn pictures_one_after_the_other(size in size(), steps in prop::collection::vec(step(), 1..12)) {
-        for tiled in rasterizers() {
-            let mut targets = [0, 1].map(|_| Target::<f32>::sized(size.0, size.1));
-            for step in &steps {
-                let [by_tiles, by_pixels] = &mut targets;
-                step.happen(by_tiles, Some(&tiled));
-                step.happen(by_pixels, None);
-                assert_same(by_tiles, by_pixels);
-            }
+    fn pictures_one_after_the_other(
+        instructions in instructions(), size in size(), steps in prop::collection::vec(step(), 1..12),
+    ) {
+        let tiled = rasterizer(instructions);
+        let mut targets = [0, 1].map(|_| Target::<f32>::sized(size.0, size.1));
+        for step in &steps {
+            let [by_tiles, by_pixels] = &mut targets;
+            step.happen(by_tiles, Some(&tiled));
+            step.happen(by_pixels, None);
+            assert_same(by_tiles, by_pixels);
         }
     }
 
     #[test]
-    fn two_pictures_by_turns(size in size(), steps in prop::collection::vec(
+    fn two_pictures_by_turns(instructions in instructions(), size in size(), steps in prop::collection::vec(
         (step(), prop_oneof![Just(Turn::Stay), Just(Turn::Other), Just(Turn::Copy), Just(Turn::Swap)]), 1..12,
     )) {
         // What is known of a picture stays with it, and its copy knows nothing false.
-        for tiled in rasterizers() {
-            let pair = [0, 1].map(|_| Target::<f32>::sized(size.0, size.1));
-            let [mut here, mut there] = [pair.clone(), pair];
-            for (step, turn) in &steps {
-                match turn {
-                    Turn::Stay => {}
-                    Turn::Other => std::mem::swap(&mut here, &mut there),
-                    Turn::Copy => there = here.clone(),
-                    Turn::Swap => {
-                        let pairs = here.iter_mut().zip(&mut there);
-                        pairs.for_each(|(here, there)| std::mem::swap(&mut here.color, &mut there.color));
-                    }
+        let tiled = rasterizer(instructions);
+        let pair = [0, 1].map(|_| Target::<f32>::sized(size.0, size.1));
+        let [mut here, mut there] = [pair.clone(), pair];
+        for (step, turn) in &steps {
+            match turn {
+                Turn::Stay => {}
+                Turn::Other => std::mem::swap(&mut here, &mut there),
+                Turn::Copy => there = here.clone(),
+                Turn::Swap => {
+                    let pairs = here.iter_mut().zip(&mut there);
+                    pairs.for_each(|(here, there)| std::mem::swap(&mut here.color, &mut there.color));
                 }
-                let [by_tiles, by_pixels] = &mut here;
-                step.happen(by_tiles, Some(&tiled));
-                step.happen(by_pixels, None);
-                assert_same(by_tiles, by_pixels);
             }
+            let [by_tiles, by_pixels] = &mut here;
+            step.happen(by_tiles, Some(&tiled));
+            step.happen(by_pixels, None);
+            assert_same(by_tiles, by_pixels);
         }
     }
 }

@@ -20,9 +20,9 @@ fn of(chapter: &'static str, variant: &Variant, pixel: Pixel) -> History {
 fn pixels((width, height): (u32, u32)) -> Vec<Pixel> {
     let (right, top) = (width as i32 - 1, height as i32 - 1);
     let mut pixels = vec![(0, 0), (right, 0), (0, top), (right, top), (right / 2, 0), (0, top / 2), (100, 0)];
-    for row in 0..4 {
-        for column in 0..4 {
-            pixels.push((right * (2 * column + 1) / 8, top * (2 * row + 1) / 8));
+    for row in 0..3 {
+        for column in 0..3 {
+            pixels.push((right * (2 * column + 1) / 6, top * (2 * row + 1) / 6));
         }
     }
     pixels
