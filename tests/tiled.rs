@@ -437,15 +437,15 @@ impl<const N: usize, const IS_SLOPED: bool> Shader<N> for Many<N, IS_SLOPED> {
 
 #[test]
 fn any_number_of_varyings() {
-    fn check<const N: usize>(mesh: &Mesh<Record>) {
-        compare(mesh, &Many::<N, false>, &RenderState::default(), (150, 90));
-        compare(mesh, &Many::<N, true>, &RenderState::default(), (150, 90));
+    fn check<const N: usize, const IS_SLOPED: bool>(mesh: &Mesh<Record>) {
+        compare(mesh, &Many::<N, IS_SLOPED>, &RenderState::default(), (150, 90));
     }
     let mesh = crowd(400, 13);
-    check::<0>(&mesh);
-    check::<6>(&mesh);
-    check::<7>(&mesh);
-    check::<15>(&mesh);
+    check::<0, false>(&mesh);
+    check::<6, false>(&mesh);
+    check::<7, true>(&mesh);
+    check::<15, false>(&mesh);
+    check::<15, true>(&mesh);
 }
 
 /// Filters that need derivatives, and the tables of sRGB.
