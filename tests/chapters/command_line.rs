@@ -737,6 +737,11 @@ fn written_below(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
+/// Whether one of these options is among some, each of which is followed by its value.
+fn is_any(options: &[&[&str]], names: &[&str]) -> bool {
+    options.iter().any(|option| names.contains(&option[0]))
+}
+
 #[test]
 fn of_two_options_both_are_used_or_the_pair_is_refused() {
     const OPTIONS: &[&[&str]] = &[
@@ -760,12 +765,11 @@ fn of_two_options_both_are_used_or_the_pair_is_refused() {
     let folder = folder("pairs");
     // A small picture of a mistake, where that may be said.
     let run = |options: &[&[&str]]| {
-        let is_any = |names: &[&str]| options.iter().any(|option| names.contains(&option[0]));
         let mut arguments: Vec<&str> = options.concat();
-        if !is_any(&["--all", "--list"]) {
+        if !is_any(options, &["--all", "--list"]) {
             arguments.insert(0, "affine");
         }
-        if !is_any(&["--size", "--list", "--knobs"]) {
+        if !is_any(options, &["--size", "--list", "--knobs"]) {
             arguments.extend(["--size", "16x12"]);
         }
         outcome(&folder, &arguments)
@@ -835,22 +839,17 @@ const NEW: usize = 10;
 
 /// A run with some options of a pair, which says by itself what variant and what model can have both.
 fn run_of_pair(folder: &Path, pair: [&[&str]; 2], options: &[&[&str]]) -> (Outcome, String) {
-    let is_any = |names: &[&str]| options.iter().any(|option| names.contains(&option[0]));
     let mut arguments: Vec<&str> = options.concat();
-    if !is_any(&["--all", "--list"]) {
-        arguments.insert(0, if has(pair, "--as-is") { "exact" } else { "turntable" });
+    if !is_any(options, &["--all", "--list"]) {
+        arguments.insert(0, if is_any(&pair, &["--as-is"]) { "exact" } else { "turntable" });
     }
-    if !has(pair, "--model") && !is_any(&["--all", "--list", "--knobs"]) {
+    if !is_any(&pair, &["--model"]) && !is_any(options, &["--all", "--list", "--knobs"]) {
         arguments.extend(OF_MODELS[2]);
     }
-    if !is_any(&["--size", "--list", "--knobs"]) {
+    if !is_any(options, &["--size", "--list", "--knobs"]) {
         arguments.extend(["--size", "8x6"]);
     }
     told_outcome(folder, &arguments)
-}
-
-fn has(pair: [&[&str]; 2], name: &str) -> bool {
-    pair.iter().any(|option| option[0] == name)
 }
 
 #[test]
@@ -872,7 +871,7 @@ fn beside_an_option_of_models_or_animations_any_other_is_used_or_refused() {
             let (both, said) = run_of_pair(&folder, pair, &pair);
             if both.0 == Some(0) {
                 accepted += 1;
-                let base = ["--as-is", "--model"].map(|name| has(pair, name));
+                let base = ["--as-is", "--model"].map(|name| is_any(&pair, &[name]));
                 for (option, other) in [(first, second), (second, first)] {
                     let alone = || run_of_pair(&folder, pair, &[option]).0;
                     let single = known.entry((base, option)).or_insert_with(alone);
