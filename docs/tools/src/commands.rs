@@ -102,6 +102,9 @@ fn task(command: &str) -> Task {
     if words.iter().any(|word| word == "--window") {
         return Task::LeaveOut("needs a display");
     }
+    if words.iter().any(|word| word == "--manifest-path") {
+        return Task::LeaveOut("of another workspace");
+    }
     match words.get(1).map(String::as_str) {
         Some("run" | "build") => Task::Run(words),
         Some("test") => match words.iter().position(|word| word == "--test").and_then(|at| words.get(at + 1))
