@@ -381,7 +381,7 @@ mod tests {
         assert_eq!([1, MOST_OUTLINES / 2, MOST_OUTLINES / 2 + 1].map(shown), [2, MOST_OUTLINES, 0]);
     }
 
-    /// The vertices of an outline, in order; `None` where a line is missing after one.
+    /// The vertices of an outline, whose lines are closed, in their order.
     fn vertices(outline: &Outline) -> Vec<DVec2> {
         let lines = &outline.lines;
         for (i, [_, end]) in lines.iter().enumerate() {

@@ -24,7 +24,7 @@ use crate::target::Target;
 /// A vertex in clip space, whose x and y are its place in the model, too; and its values.
 type Vertex = (DVec4, [f64; 2]);
 
-/// Two values as red and green, translucent where the second is large; nothing where the first is.
+/// Two values as red and green; nothing where the first is large.
 struct Values;
 
 impl Shader<2> for Values {
@@ -39,8 +39,7 @@ impl Shader<2> for Values {
     }
 
     fn fragment<R: Real>(&self, [u, v]: [R; 2]) -> Shaded<R> {
-        let opacity = R::select(v.is_less(R::of(100.0)), R::of(1.0), R::of(0.5));
-        Shaded::translucent([u, v, R::of(0.0)], opacity).discard(R::of(200.0).is_less(u))
+        Shaded::opaque([u, v, R::of(0.0)]).discard(R::of(200.0).is_less(u))
     }
 }
 
@@ -119,12 +118,6 @@ fn early(picture: &mut Framebuffer) {
     });
 }
 
-fn of_pipeline(draw: fn(&mut Canvas), rasterizer: RasterizerChoice, pixel: Pixel) -> History {
-    let variant = Variant::with_pipeline("pipeline", draw, "").size(16, 16);
-    let options = DrawOptions { rasterizer, ..variant.options(None) };
-    history("ch00", &variant, &options, pixel)
-}
-
 /// A spike, a triangle of chapter 5, samples of a pixel, and a triangle that a program clips by itself, as chapter 7 does.
 pub(super) fn by_itself(picture: &mut Framebuffer) {
     // The nearly horizontal edge leads 40 pixels to the right in its second row.
@@ -166,6 +159,12 @@ pub(super) fn by_itself(picture: &mut Framebuffer) {
 fn of_framebuffer(draw: fn(&mut Framebuffer), pixel: Pixel) -> History {
     let variant = Variant::new("stages", draw, "").size(16, 16);
     history("ch00", &variant, &variant.options(None), pixel)
+}
+
+fn of_pipeline(draw: fn(&mut Canvas), rasterizer: RasterizerChoice, pixel: Pixel) -> History {
+    let variant = Variant::with_pipeline("pipeline", draw, "").size(16, 16);
+    let options = DrawOptions { rasterizer, ..variant.options(None) };
+    history("ch00", &variant, &options, pixel)
 }
 
 /// Pins a text as `snapshots/NAME.snap`.

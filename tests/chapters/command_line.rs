@@ -742,6 +742,18 @@ fn is_any(options: &[&[&str]], names: &[&str]) -> bool {
     options.iter().any(|option| names.contains(&option[0]))
 }
 
+/// A small picture of a variant by these options, where both may be said.
+fn small<'a>(options: &[&[&'a str]], variant: &'a str, size: &'a str) -> Vec<&'a str> {
+    let mut arguments: Vec<&str> = options.concat();
+    if !is_any(options, &["--all", "--list"]) {
+        arguments.insert(0, variant);
+    }
+    if !is_any(options, &["--size", "--list", "--knobs"]) {
+        arguments.extend(["--size", size]);
+    }
+    arguments
+}
+
 #[test]
 fn of_two_options_both_are_used_or_the_pair_is_refused() {
     const OPTIONS: &[&[&str]] = &[
@@ -763,17 +775,7 @@ fn of_two_options_both_are_used_or_the_pair_is_refused() {
         &["--window"],
     ];
     let folder = folder("pairs");
-    // A small picture of a mistake, where that may be said.
-    let run = |options: &[&[&str]]| {
-        let mut arguments: Vec<&str> = options.concat();
-        if !is_any(options, &["--all", "--list"]) {
-            arguments.insert(0, "affine");
-        }
-        if !is_any(options, &["--size", "--list", "--knobs"]) {
-            arguments.extend(["--size", "16x12"]);
-        }
-        outcome(&folder, &arguments)
-    };
+    let run = |options: &[&[&str]]| outcome(&folder, &small(options, "affine", "16x12"));
     let single: Vec<_> = OPTIONS.iter().map(|option| run(&[option])).collect();
     let mut accepted = 0;
     for (i, first) in OPTIONS.iter().enumerate() {
@@ -839,15 +841,10 @@ const NEW: usize = 10;
 
 /// A run with some options of a pair, which says by itself what variant and what model can have both.
 fn run_of_pair(folder: &Path, pair: [&[&str]; 2], options: &[&[&str]]) -> (Outcome, String) {
-    let mut arguments: Vec<&str> = options.concat();
-    if !is_any(options, &["--all", "--list"]) {
-        arguments.insert(0, if is_any(&pair, &["--as-is"]) { "exact" } else { "turntable" });
-    }
+    let variant = if is_any(&pair, &["--as-is"]) { "exact" } else { "turntable" };
+    let mut arguments = small(options, variant, "8x6");
     if !is_any(&pair, &["--model"]) && !is_any(options, &["--all", "--list", "--knobs"]) {
         arguments.extend(OF_MODELS[2]);
-    }
-    if !is_any(options, &["--size", "--list", "--knobs"]) {
-        arguments.extend(["--size", "8x6"]);
     }
     told_outcome(folder, &arguments)
 }
