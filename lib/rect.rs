@@ -64,6 +64,7 @@ impl Rect {
 
     /// The pixels that belong to both rectangles; where there are none, a rectangle without pixels.
     #[must_use]
+    #[inline]
     pub fn intersection(self, other: Self) -> Self {
         Self {
             left: self.left.max(other.left),

@@ -56,6 +56,13 @@ impl Triangle<'_> {
 /// So many vertices are divided and snapped at a time.
 const AT_A_TIME: usize = 4;
 
+/// What a function gives for each of four vertices. (`from_fn` of the standard library need not be inlined, and what it gives is
+/// then written to memory and copied.)
+#[inline(always)]
+fn each_of_four<T>(of: impl Fn(usize) -> T) -> [T; AT_A_TIME] {
+    [of(0), of(1), of(2), of(3)]
+}
+
 /// How many blocks of eight numbers so many varyings take.
 const fn blocks_of(varyings: usize) -> usize {
     (2 + varyings).div_ceil(LANES)
@@ -109,8 +116,10 @@ impl Vertices {
                     let slots = slots.zip(packed.chunks_exact_mut(AT_A_TIME * blocks));
                     for (four, ((positions, outside), packed)) in slots.enumerate() {
                         let number = |i: usize| (first + four * AT_A_TIME + i).min(vertices.len() - 1);
-                        let clip: [ClipVertex<N>; AT_A_TIME] =
-                            from_fn(|i| shader.vertex(&vertices[number(i)]));
+                        let clip = each_of_four(
+                            #[inline(always)]
+                            |i| shader.vertex(&vertices[number(i)]),
+                        );
                         let ndc;
                         (*positions, *outside, ndc) = projection.project(instructions, &clip);
                         let packed = packed.chunks_exact_mut(blocks);
