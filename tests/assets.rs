@@ -1,4 +1,4 @@
-//! What is committed in `assets/` is what the generator writes. `UPDATE_ASSETS=1 cargo test --test assets` writes it.
+//! What is committed in `assets/` is what the generator writes. `UPDATE_ASSETS=1 cargo test --test library assets` writes it.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -36,7 +36,7 @@ fn assets_are_what_the_generator_writes() {
     }
     assert!(
         outdated.is_empty(),
-        "{outdated:?} differ from what the generator writes: UPDATE_ASSETS=1 cargo test --test assets"
+        "{outdated:?} differ from what the generator writes: UPDATE_ASSETS=1 cargo test --test library assets"
     );
 }
 

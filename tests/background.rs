@@ -1,9 +1,7 @@
 //! The fast rasterizer does not clear again what is blank already. Whatever has happened to a picture in between, it
 //! must look as if all of it had been cleared.
 
-#[path = "support/targets.rs"]
-mod targets;
-
+use crate::targets::assert_same;
 use glam::{DVec4, dvec4};
 use proptest::prelude::*;
 use rasterbook::depth::{DepthBuffer, DepthTest};
@@ -13,7 +11,6 @@ use rasterbook::transform::Viewport;
 use rasterbook::{
     ClipVertex, Color, Framebuffer, LoadOp, Mesh, Real, RenderState, Shaded, Shader, Silent, Target, draw,
 };
-use targets::assert_same;
 
 /// Six columns and three rows of tiles, the last ones not whole. Once the width is a multiple of eight, once not.
 const SIZES: [(u32, u32); 2] = [(728, 90), (725, 90)];

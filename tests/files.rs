@@ -3,6 +3,7 @@
 
 #[path = "support/drawing.rs"]
 mod drawing;
+mod wild;
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

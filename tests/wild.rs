@@ -1,14 +1,11 @@
 //! Models and textures as they come from the wild: each case of the table is drawn like its plain form, pixel by pixel, and
 //! what is not drawn is said.
 
-#[path = "support/drawing.rs"]
-mod drawing;
-
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use crate::drawing::{self, draw, stderr};
 use base64::Engine;
-use drawing::{draw, stderr};
 use rayon::prelude::*;
 
 fn folder(name: &str) -> PathBuf {
