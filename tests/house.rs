@@ -218,3 +218,18 @@ fn the_front_page_lists_the_rooms_in_their_order() {
         rooms(&modules()).into_iter().filter(|room| !SMALL.contains(&room.as_str())).collect();
     assert_eq!(listed, rooms);
 }
+
+/// Cargo is told which programs of tests there are: a file that none of them has would never be compiled.
+#[test]
+fn every_file_of_tests_belongs_to_a_program() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let read = |file: &str| std::fs::read_to_string(root.join(file)).expect("a source");
+    let (manifest, programs) = (read("Cargo.toml"), read("tests/library.rs") + &read("tests/files.rs"));
+    for file in root.join("tests").read_dir().expect("a folder").map(|entry| entry.expect("an entry").path())
+    {
+        let stem = file.file_stem().and_then(|stem| stem.to_str()).expect("a name");
+        let is_program = manifest.contains(&format!("[[test]]\nname = \"{stem}\"\n"));
+        let is_known = is_program || programs.contains(&format!("\nmod {stem};\n"));
+        assert!(is_known || file.extension().is_none_or(|extension| extension != "rs"), "{}", file.display());
+    }
+}
