@@ -10,6 +10,7 @@
 //! ```
 
 mod decode;
+mod guard;
 #[cfg(feature = "jpeg")]
 mod jpeg;
 mod orientation;
@@ -24,6 +25,7 @@ use std::sync::Arc;
 use image::ImageFormat;
 
 use self::decode::decode_within;
+pub use self::guard::silence_decoders;
 use crate::texture::Texture;
 
 /// The largest file that is read: 256 MiB.

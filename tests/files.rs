@@ -154,6 +154,31 @@ fn bad_textures() {
     refused("huge", "--texture", "a.png", &huge, "exceeds limit");
 }
 
+#[test]
+fn a_texture_at_which_its_decoder_panics() {
+    // 4 bytes are no whole number of colors, and 776 are more than 256.
+    for (bytes, cause) in [(4, "range end index 3"), (776, "index out of bounds")] {
+        // One pixel of eight bits, the first color of a palette; its row, which begins with the number of a filter, in a block
+        // that is not compressed.
+        let header = [0, 0, 0, 1, 0, 0, 0, 1, 8, 3, 0, 0, 0];
+        let row = [0x78, 1, 1, 2, 0, 0xfd, 0xff, 0, 0, 0, 2, 0, 1];
+        let png = |palette: &[u8]| {
+            let chunks = [chunk(b"IHDR", &header), chunk(b"PLTE", palette), chunk(b"IDAT", &row)];
+            [b"\x89PNG\r\n\x1a\n".to_vec(), chunks.concat(), chunk(b"IEND", b"")].concat()
+        };
+        accepted("palette", &[("a.png", &png(&[200; 3]))], &["--texture", "a.png"]);
+        let told = format!("its decoder failed: {cause}");
+        let name = format!("palette_of_{bytes}");
+        refused(&name, "--texture", "a.png", &png(&vec![200; bytes]), &told);
+    }
+}
+
+/// A chunk of a PNG file.
+fn chunk(kind: &[u8; 4], data: &[u8]) -> Vec<u8> {
+    let (length, content) = ((data.len() as u32).to_be_bytes(), [kind, data].concat());
+    [&length, content.as_slice(), &crc32(&content).to_be_bytes()].concat()
+}
+
 /// The checksum of PNG chunks, bit by bit.
 fn crc32(bytes: &[u8]) -> u32 {
     !bytes.iter().fold(!0, |crc, &byte| {

@@ -8,6 +8,7 @@ use image::{
     DynamicImage, ImageBuffer, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, Pixel, Rgba,
 };
 
+use super::guard::guarded;
 use super::orientation::{exif_of_png, of_exif};
 use super::{FileError, MAX_TEXELS};
 use crate::color::Color;
@@ -57,12 +58,12 @@ pub(super) fn decode_within(
         }
         Ok(())
     };
-    let image = match format {
+    let image = guarded(path, || match format {
         #[cfg(feature = "jpeg")]
         ImageFormat::Jpeg => super::jpeg::decode(bytes, path, judge),
         _ => decode(bytes, format, path, judge),
-    };
-    Ok((texture_of(image?), format))
+    })?;
+    Ok((texture_of(image), format))
 }
 
 /// Decodes PNG, BMP, TGA and PNM files, if `judge` lets their size pass, and turns them as they say.

@@ -21,6 +21,7 @@ use super::window::open_window;
 use super::wrap::{WIDEST, terminal_width, wrap_columns};
 use crate::figure::picture::{Zoom, difference, side_by_side, zoomed};
 use crate::figure::{Animation, Chapter, DrawOptions, Knob, Scene, Variant};
+use crate::files::silence_decoders;
 use crate::framebuffer::Framebuffer;
 use crate::inspect::{Steps, history, overdraw, with_legend};
 use crate::rect::{Pixel, Rect};
@@ -35,6 +36,7 @@ impl Chapter {
     /// The same with arguments of the caller's, the program's own name first.
     #[must_use]
     pub fn main_with(&self, arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+        silence_decoders();
         match Request::parse(self, arguments) {
             Ok(request) => ended(run(self, &request)),
             Err(error) => refused(&error),
