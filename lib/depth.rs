@@ -201,6 +201,12 @@ impl<D: Scalar> DepthBuffer<D> {
         self.rect.index(x, y).map(|index| self.values[index])
     }
 
+    /// The rows as [`Framebuffer::rows_from_top`](crate::Framebuffer::rows_from_top) has them: the highest first.
+    pub fn rows_from_top(&self) -> impl Iterator<Item = &[D]> {
+        // A buffer without columns has no rows either.
+        self.values.chunks(self.rect.columns().len().max(1)).rev()
+    }
+
     /// The plane itself, for stages that write many depths at a time; that is not reported.
     #[cfg(feature = "tiled")]
     pub(crate) const fn plane_mut(&mut self) -> &mut PixelPlane<D> {
@@ -247,6 +253,16 @@ mod tests {
     #[should_panic(expected = "no memory can hold 4294967295×4294967294 depths")]
     fn a_buffer_has_its_limit() {
         let _ = DepthBuffer::<f64>::new(u32::MAX, u32::MAX - 1);
+    }
+
+    #[test]
+    fn rows_begin_at_the_top() {
+        let mut depths = DepthBuffer::<f32>::new(2, 3);
+        depths.test_and_set(1, 2, 0.5, DepthTest::Always);
+        depths.test_and_set(0, 0, 0.25, DepthTest::Always);
+        let rows: Vec<_> = depths.rows_from_top().collect();
+        assert_eq!(rows, [[0.0, 0.5], [0.0, 0.0], [0.25, 0.0]]);
+        assert_eq!(DepthBuffer::<f32>::new(0, 3).rows_from_top().count(), 0);
     }
 
     #[test]
