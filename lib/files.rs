@@ -161,6 +161,7 @@ pub fn decode_texture(bytes: &[u8], path: &Path) -> Result<(Texture, ImageFormat
 #[cfg(test)]
 pub(crate) mod scratch {
     use std::fs;
+    use std::hash::{BuildHasher, RandomState};
     use std::path::PathBuf;
 
     /// A folder of files for one test, which removes it, also when it fails.
@@ -168,7 +169,10 @@ pub(crate) mod scratch {
 
     impl Folder {
         pub(crate) fn new(name: &str, files: &[(&str, &[u8])]) -> Self {
-            let folder = std::env::temp_dir().join(format!("rasterbook.{}.{name}", std::process::id()));
+            // WebAssembly's systems have no name for such a place, and no number of the process. The state of a hash table is
+            // random.
+            let top = if cfg!(target_family = "wasm") { "/tmp".into() } else { std::env::temp_dir() };
+            let folder = top.join(format!("rasterbook.{:016x}.{name}", RandomState::new().hash_one(name)));
             for (name, content) in files {
                 let path = folder.join(name);
                 fs::create_dir_all(path.parent().unwrap_or(&folder)).expect("a place for temporary files");
@@ -210,7 +214,8 @@ mod tests {
 
     #[test]
     fn what_is_no_file_is_named() {
-        let folder = read_file(&std::env::temp_dir()).expect_err("a folder");
+        let folder = Folder::new("folder", &[("a.txt", b"12345")]);
+        let folder = read_file(&folder.0).expect_err("a folder");
         assert!(folder.to_string().ends_with(": is a folder"), "{folder}");
         assert!(folder.source().is_none(), "found out here");
         let missing = read_file("nowhere/a.obj".as_ref()).expect_err("not there");

@@ -420,6 +420,7 @@ mod tests {
     use super::*;
 
     #[test]
+    #[cfg(not(target_family = "wasm"))]
     fn what_is_made_is_what_is_read() {
         let made = generate();
         assert_eq!(made.len(), FILES.len());

@@ -448,6 +448,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(all(target_arch = "wasm32", not(target_feature = "simd128")), ignore = "`Exact` draws")]
     fn the_tiles_of_a_triangle_are_those_of_its_box() {
         // Three columns and three rows of tiles.
         let (width, height) = (3 * TILE_WIDTH, 3 * TILE_HEIGHT);
