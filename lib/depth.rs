@@ -170,16 +170,17 @@ impl<D: PartialEq> PartialEq for DepthBuffer<D> {
 }
 
 impl<D: Scalar> DepthBuffer<D> {
-    /// A buffer of `width` × `height` depths, all of them 0.
+    /// A buffer of `width` × `height` depths, all of them 0; a side has at most 2³¹ − 1.
     ///
     /// # Panics
     /// If no memory can hold so many.
     #[must_use]
     pub fn new(width: u32, height: u32) -> Self {
-        let count = count_of::<D>([width, height], 1);
+        let rect = Rect::sized(width, height);
+        let count = count_of::<D>([rect.right as u32, rect.top as u32], 1);
         let count = count.unwrap_or_else(|| panic!("no memory can hold {width}×{height} depths"));
         let values = vec![D::of(0.0); count];
-        Self { rect: Rect::sized(width, height), values: values.into(), observer: None }
+        Self { rect, values: values.into(), observer: None }
     }
 
     /// All pixels.
@@ -201,9 +202,10 @@ impl<D: Scalar> DepthBuffer<D> {
         self.rect.index(x, y).map(|index| self.values[index])
     }
 
-    /// The rows as [`Framebuffer::rows_from_top`](crate::Framebuffer::rows_from_top) has them: the highest first.
+    /// The rows as [`Framebuffer::rows_from_top`](crate::Framebuffer::rows_from_top) has them: the highest first. There are none
+    /// if there are no columns.
     pub fn rows_from_top(&self) -> impl Iterator<Item = &[D]> {
-        // A buffer without columns has no rows either.
+        // No slice is cut into pieces of no length.
         self.values.chunks(self.rect.columns().len().max(1)).rev()
     }
 

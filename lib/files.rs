@@ -131,7 +131,8 @@ pub(crate) fn read_file_within(path: &Path, limit: u64) -> Result<Vec<u8>, FileE
 /// Reads a texture from an image file (PNG, BMP, TGA, JPEG); what a file is says its content, not its name.
 ///
 /// # Errors
-/// If the file cannot be read or is no such image, or if it is larger than [`MAX_FILE_BYTES`] or [`MAX_TEXELS`].
+/// If the file cannot be read or is no such image, or if it is larger than [`MAX_FILE_BYTES`] or [`MAX_TEXELS`]; also if a
+/// decoder panics at it, unless panics end the program.
 pub fn load_texture(path: &Path) -> Result<(Texture, Warnings), FileError> {
     load_texture_within(path, MAX_TEXELS)
 }
@@ -169,8 +170,7 @@ pub(crate) mod scratch {
 
     impl Folder {
         pub(crate) fn new(name: &str, files: &[(&str, &[u8])]) -> Self {
-            // WebAssembly's systems have no name for such a place, and no number of the process. The state of a hash table is
-            // random.
+            // WASI has no temporary folder and no process ID. The state of a hash table is random.
             let top = if cfg!(target_family = "wasm") { "/tmp".into() } else { std::env::temp_dir() };
             let folder = top.join(format!("rasterbook.{:016x}.{name}", RandomState::new().hash_one(name)));
             for (name, content) in files {
@@ -215,9 +215,9 @@ mod tests {
     #[test]
     fn what_is_no_file_is_named() {
         let folder = Folder::new("folder", &[("a.txt", b"12345")]);
-        let folder = read_file(&folder.0).expect_err("a folder");
-        assert!(folder.to_string().ends_with(": is a folder"), "{folder}");
-        assert!(folder.source().is_none(), "found out here");
+        let refused = read_file(&folder.0).expect_err("a folder");
+        assert!(refused.to_string().ends_with(": is a folder"), "{refused}");
+        assert!(refused.source().is_none(), "found out here");
         let missing = read_file("nowhere/a.obj".as_ref()).expect_err("not there");
         assert!(missing.to_string().starts_with("nowhere/a.obj: "), "{missing}");
         let cause = missing.source().and_then(|cause| cause.downcast_ref::<std::io::Error>());

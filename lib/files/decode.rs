@@ -58,12 +58,12 @@ pub(super) fn decode_within(
         }
         Ok(())
     };
-    let image = guarded(path, || match format {
+    let image = match format {
         #[cfg(feature = "jpeg")]
         ImageFormat::Jpeg => super::jpeg::decode(bytes, path, judge),
         _ => decode(bytes, format, path, judge),
-    })?;
-    Ok((texture_of(image), format))
+    };
+    Ok((texture_of(image?), format))
 }
 
 /// Decodes PNG, BMP, TGA and PNM files, if `judge` lets their size pass, and turns them as they say.
@@ -76,9 +76,9 @@ fn decode(
     let failure = |error: ImageError| FileError::from_source(path, error);
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     reader.limits(limits());
-    let decoder = reader.into_decoder().map_err(failure)?;
+    let decoder = guarded(path, || reader.into_decoder().map_err(failure))?;
     judge(decoder.dimensions())?;
-    let mut image = DynamicImage::from_decoder(decoder).map_err(failure)?;
+    let mut image = guarded(path, || DynamicImage::from_decoder(decoder).map_err(failure))?;
     if format == ImageFormat::Png {
         image.apply_orientation(exif_of_png(bytes).map_or(Orientation::NoTransforms, of_exif));
     }

@@ -11,6 +11,7 @@ use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
 
 use super::FileError;
+use super::guard::guarded;
 use super::orientation::of_exif;
 use crate::framebuffer::Framebuffer;
 
@@ -29,11 +30,11 @@ pub(super) fn decode(
         .set_max_width(side)
         .set_max_height(side);
     let mut decoder = JpegDecoder::new_with_options(ZCursor::new(bytes), options);
-    decoder.decode_headers().map_err(failure)?;
+    guarded(path, || decoder.decode_headers().map_err(failure))?;
     let (width, height) = decoder.dimensions().ok_or_else(|| damaged("has no size"))?;
     let size = (width as u32, height as u32);
     judge(size)?;
-    let pixels = decoder.decode().map_err(failure)?;
+    let pixels = guarded(path, || decoder.decode().map_err(failure))?;
     let image = RgbImage::from_raw(size.0, size.1, pixels).ok_or_else(|| damaged("has too few pixels"))?;
     let mut image = DynamicImage::from(image);
     image.apply_orientation(decoder.exif().map_or(Orientation::NoTransforms, |exif| of_exif(exif)));

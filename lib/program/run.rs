@@ -30,13 +30,13 @@ impl Chapter {
     /// The whole program: reads the arguments, draws, writes, reports.
     #[must_use]
     pub fn main(&self) -> ExitCode {
+        silence_decoders();
         self.main_with(std::env::args_os())
     }
 
     /// The same with arguments of the caller's, the program's own name first.
     #[must_use]
     pub fn main_with(&self, arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-        silence_decoders();
         match Request::parse(self, arguments) {
             Ok(request) => ended(run(self, &request)),
             Err(error) => refused(&error),

@@ -87,14 +87,15 @@ fn in_other_proportions_a_scene_lies_undistorted_in_the_middle() {
     all(false, |variant| {
         let wrong = |(width, height): (u32, u32)| {
             let own = draw(variant, (width, height));
-            let missing = [(60, 0), (0, 60)].map(|(wider, higher)| {
+            let found = [(60, 0), (0, 60)].map(|(wider, higher)| {
                 let picture = draw(variant, (width + wider, height + higher));
                 let mut middle = Framebuffer::new(width, height);
                 paste(&mut middle, &picture, -(wider as i32 / 2), -(higher as i32 / 2));
                 [missing(&own, &middle, 1.0), missing(&middle, &own, 1.0)]
             });
-            too_many(missing.as_flattened())
+            too_many(found.as_flattened())
         };
+        // A smaller picture first. Where that has too few pixels, or too many on edges, a larger one decides.
         wrong(smaller(variant, 4)).and_then(|_| wrong(smaller(variant, 2)))
     });
 }

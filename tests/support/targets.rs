@@ -18,13 +18,14 @@ pub(crate) fn assert_same(tiled: &Target<f32>, exact: &Target<f32>) {
     }
 }
 
-/// Whether rows of as many depths are the same; not so, perhaps, if some are not numbers.
+/// Whether all bits of two rows are the same. NaNs that are written in different ways differ here.
 fn have_same_bits(these: &[f32], those: &[f32]) -> bool {
     // No branch: this is done for every pixel of every picture.
     let differing = |bits, (a, b): (&f32, &f32)| bits | (a.to_bits() ^ b.to_bits());
     these.iter().zip(those).fold(0, differing) == 0
 }
 
+/// Whether two depths are the same, or none is a number.
 fn is_same([a, b]: [f32; 2]) -> bool {
     a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan())
 }

@@ -40,14 +40,17 @@ fn check_model(model: &Model) {
     assert!(low.cmple(high).all(), "{low} {high}");
 }
 
-/// The bytes of an image. What is no other kind of file is one of TGA, by its name: it has no mark inside.
+/// TGA files have no mark inside: only the name tells them. Of all others the content is asked first.
+const IMAGE: &str = "image.tga";
+
+/// The bytes of an image.
 pub(crate) fn image(data: &[u8]) {
-    match decode_texture(data, Path::new("image.tga")) {
+    match decode_texture(data, Path::new(IMAGE)) {
         Ok((texture, _)) => {
             let last = texture.nearest([1.0, 1.0], AddressMode::Clamp);
             assert!(last.iter().all(|channel| (0.0..=255.0_f64).contains(channel)));
         }
-        Err(error) => check_error(&error, "image.tga"),
+        Err(error) => check_error(&error, IMAGE),
     }
 }
 

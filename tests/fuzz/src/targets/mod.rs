@@ -1,4 +1,5 @@
-//! Whatever the bytes are: no panic, no hang, and what the documentation promises.
+//! Whatever the bytes are: no panic, no hang, and what the documentation promises. (A panic of an image's decoder is its own,
+//! and an error here.)
 
 mod bytes;
 mod figures;
