@@ -17,7 +17,7 @@ mod orientation;
 
 use std::error::Error;
 use std::fmt;
-use std::fs::File;
+use std::fs::{File, Metadata};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -83,14 +83,26 @@ pub(crate) fn shown(text: &str) -> String {
     safe
 }
 
-/// A path as a terminal may show it. Bytes that are no text are escaped, so that the name can be recognized.
+/// A path as a terminal may show it. Bytes that are no text are escaped, so that the name can be recognized. Of what is too
+/// long to be a path the beginning is shown: a model can name a texture by any number of bytes.
 pub(crate) fn shown_path(path: &Path) -> String {
+    const MOST: usize = 4096;
+    let bytes = path.as_os_str().as_encoded_bytes();
     let mut safe = String::new();
-    for chunk in path.as_os_str().as_encoded_bytes().utf8_chunks() {
+    for chunk in bytes[..bytes.len().min(MOST)].utf8_chunks() {
         safe += &shown(chunk.valid());
         safe.extend(chunk.invalid().iter().map(|byte| format!("\\x{byte:02x}")));
     }
+    if bytes.len() > MOST {
+        safe.push('…');
+    }
     safe
+}
+
+/// What something is that is no regular file, and so is neither read nor replaced.
+pub(crate) fn not_a_file(metadata: &Metadata) -> Option<&'static str> {
+    let what = if metadata.is_dir() { "is a folder" } else { "is no regular file: a pipe or a device" };
+    (!metadata.is_file()).then_some(what)
 }
 
 /// The bytes of a file: the one door for all that is read. A folder, a pipe and a device are refused, and so is a file
@@ -103,8 +115,7 @@ pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>, FileError> {
 pub(crate) fn read_file_within(path: &Path, limit: u64) -> Result<Vec<u8>, FileError> {
     let failure = |error| FileError::from_source(path, error);
     let metadata = std::fs::metadata(path).map_err(failure)?;
-    if !metadata.is_file() {
-        let what = if metadata.is_dir() { "is a folder" } else { "is no regular file: a pipe or a device" };
+    if let Some(what) = not_a_file(&metadata) {
         return Err(FileError::new(path, what));
     }
     let too_large = |size| {

@@ -331,6 +331,48 @@ fn nothing_from_a_file_commands_the_terminal() {
 }
 
 #[test]
+fn what_is_said_of_a_long_word_is_short() {
+    let long = "x".repeat(20_000);
+    let files =
+        |obj: &str, mtl: &str| [("a.obj", obj.replace('…', &long)), ("a.mtl", mtl.replace('…', &long))];
+    let short =
+        |said: &str| assert!(!said.is_empty() && said.len() < 6000, "{} bytes: {said:.300}", said.len());
+    for face in [
+        "f … 1 2",
+        "f 1/… 2 3",
+        "f 9… 1 2",
+        "f 1/1/1/… 1 2",
+        "f /1/… 1 2",
+        "v 0 0 …",
+        "v 0 0 1e…",
+        "vn 0 0 … 1",
+    ] {
+        let folder = folder("a long word in an error");
+        for (name, text) in files(&format!("{SQUARE}f 1 2 3\n{face}\n"), "") {
+            write(&folder, &[(name, text.as_bytes())]);
+        }
+        let output = run(&folder, &["--model", "a.obj"]);
+        assert_eq!(output.status.code(), Some(1), "{face}");
+        short(&stderr(&output));
+    }
+    let used = format!("mtllib a.mtl\n{SQUARE}usemtl m\nf 1 2 3\n");
+    for (obj, mtl) in [
+        ("usemtl …", "newmtl m"),
+        ("mtllib ….mtl", "newmtl m"),
+        ("…", "newmtl m"),
+        ("", "newmtl m\nKd …"),
+        ("", "newmtl m\nmap_Kd ….png"),
+        ("", "newmtl m\nmap_Kd -… x.png"),
+        ("", "newmtl m\nmap_Kd -s … x.png"),
+        ("", "newmtl m\n…"),
+        ("usemtl …", "newmtl …\nmap_Kd x.png"),
+    ] {
+        let [(_, obj), (_, mtl)] = files(&format!("{used}{obj}\nf 1 3 4\n"), mtl);
+        short(&drawn("a long word", &[("a.obj", obj.as_bytes()), ("a.mtl", mtl.as_bytes())], &[]).0);
+    }
+}
+
+#[test]
 fn warnings_are_limited() {
     let faces: String = (0..1000).map(|i| format!("usemtl m{i}\nf 1 2 3\n")).collect();
     let (said, _) = drawn("many warnings", &[("a.obj", format!("{SQUARE}{faces}").as_bytes())], &[]);

@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use super::MAX_WARNINGS;
-use super::statements::{Statements, keyword, name_without_comment, readable, without_comment, words};
+use super::statements::{Statements, keyword, name_without_comment, readable, short, without_comment, words};
 use super::text::Count;
 use crate::color::Color;
 use crate::files::{
@@ -113,7 +113,7 @@ impl Materials {
         };
         let found: Vec<Option<usize>> = used.iter().map(find).collect();
         for (name, _) in used.iter().zip(&found).filter(|(_, place)| place.is_none()) {
-            let name = readable(name);
+            let name = short(name);
             warnings.push(format!(
                 "{}: material '{name}' is in no library: drawn in gray",
                 shown_path(&self.model)
@@ -154,12 +154,8 @@ impl Materials {
         let Some(name) = &material.map else { return plain };
         let library = &self.libraries[material.library];
         let folders = [folder_of(library), folder_of(&self.model)];
-        let who = format!(
-            "{}: line {}: material '{}'",
-            shown_path(library),
-            material.line,
-            readable(&material.name)
-        );
+        let who =
+            format!("{}: line {}: material '{}'", shown_path(library), material.line, short(&material.name));
         match self.pictures.load(&find_picture(folders, name), warnings) {
             Ok(picture) => match material.color.unwrap_or([1.0; 3]) {
                 [1.0, 1.0, 1.0] => Some(picture),
@@ -369,7 +365,7 @@ impl PlainLibrary {
         let channels: Option<Vec<f64>> = words(numbers).map(|word| readable(word).parse().ok()).collect();
         let channels = channels.filter(|channels| channels.iter().all(|channel: &f64| channel.is_finite()));
         let Some([red, rest @ ..]) = channels.as_deref() else {
-            return Err(format!("'Kd {}' is no color that is known here", readable(numbers)));
+            return Err(format!("'Kd {}' is no color that is known here", short(numbers)));
         };
         let green = rest.first().unwrap_or(red);
         let blue = rest.get(1).unwrap_or(red);
@@ -383,7 +379,7 @@ impl PlainLibrary {
         let changes: Vec<String> =
             options.into_iter().filter(|option| !option.is_neutral()).map(|o| o.show()).collect();
         if !changes.is_empty() {
-            let options = changes.join(", ");
+            let options = short(changes.join(", ").as_bytes());
             self.warn(line, &format!("options of map_Kd that are not drawn: {options}"));
         }
         if name.is_empty() || name.starts_with(b"#") {

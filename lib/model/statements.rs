@@ -115,6 +115,16 @@ pub(super) fn readable(name: &[u8]) -> String {
     }
 }
 
+/// What of a file's words a message shows: no more than their beginning, for they can have any length.
+pub(super) fn short(words: &[u8]) -> String {
+    const MOST: usize = 100;
+    let text = readable(words);
+    match text.char_indices().nth(MOST) {
+        None => text,
+        Some((end, _)) => format!("{}…", &text[..end]),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -146,5 +156,7 @@ mod tests {
         assert_eq!(without_comment(b"1 2 3# x"), b"1 2 3");
         assert_eq!(keyword(b"usemtl\t my stone"), (b"usemtl".as_slice(), b"my stone".as_slice()));
         assert_ne!(readable(b"caf\xe9"), readable(b"caf\xe8"));
+        assert_eq!(short("é".repeat(100).as_bytes()), "é".repeat(100));
+        assert_eq!(short("é".repeat(101).as_bytes()), format!("{}…", "é".repeat(100)));
     }
 }

@@ -15,7 +15,7 @@
 use std::collections::HashMap;
 use std::io::{BufRead, Error, Read, Result as IoResult};
 
-use super::statements::{Statements, keyword, readable, without_comment, words};
+use super::statements::{Statements, keyword, readable, short, without_comment, words};
 use crate::files::Warnings;
 
 /// How large a model may be: so many vertices, texture coordinates, normals and corners of faces together. An object, the
@@ -395,7 +395,7 @@ impl<'a> PlainText<'a> {
         let mut rest = corner;
         for list in List::ALL {
             let index;
-            (index, rest) = index_of(rest).ok_or_else(|| format!("'{}' is no index", readable(corner)))?;
+            (index, rest) = index_of(rest).ok_or_else(|| format!("'{}' is no index", short(corner)))?;
             if let Some(index) = index {
                 has[list as usize] = true;
                 self.check_index(list, index)?;
@@ -406,9 +406,9 @@ impl<'a> PlainText<'a> {
             }
         }
         match has {
-            _ if !rest.is_empty() => Err(format!("'{}' has more than three indices", readable(corner))),
+            _ if !rest.is_empty() => Err(format!("'{}' has more than three indices", short(corner))),
             [true, uvs, normals] => Ok(Given { uvs, normals }),
-            _ => Err(format!("'{}' names no vertex", readable(corner))),
+            _ => Err(format!("'{}' names no vertex", short(corner))),
         }
     }
 
@@ -467,8 +467,8 @@ fn check_number(word: &[u8]) -> Result<(), String> {
     let text = readable(&word[..word.len().min(400)]);
     match text.parse::<f64>() {
         Ok(number) if number.is_finite() => Ok(()),
-        Ok(_) => Err(format!("{text} is not a finite number")),
-        Err(_) => Err(format!("'{text}' is no number")),
+        Ok(_) => Err(format!("{} is not a finite number", short(word))),
+        Err(_) => Err(format!("'{}' is no number", short(word))),
     }
 }
 
