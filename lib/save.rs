@@ -11,12 +11,12 @@
 
 use std::fs::{self, OpenOptions};
 use std::hash::{BuildHasher, RandomState};
-use std::io::{Cursor, Write};
+use std::io::{Cursor, ErrorKind, Write};
 use std::path::Path;
 
 use image::{ImageError, ImageFormat, RgbImage};
 
-use crate::files::FileError;
+use crate::files::{FileError, not_a_file};
 use crate::framebuffer::Framebuffer;
 
 /// The formats that pictures can be written in.
@@ -57,7 +57,14 @@ pub(crate) fn encode(picture: &Framebuffer, format: ImageFormat) -> Result<Vec<u
 /// are there before the file is made, so only one within these milliseconds leaves it behind.
 pub(crate) fn replace(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    fs::create_dir_all(folder).map_err(|error| FileError::from_source(folder, error))?;
+    fs::create_dir_all(folder).map_err(|error| match error.kind() {
+        ErrorKind::AlreadyExists => FileError::new(folder, "is no folder"),
+        _ => FileError::from_source(folder, error),
+    })?;
+    // What is in the place of a pipe or a device would be a file, and who reads from it would wait for ever.
+    if let Some(what) = fs::metadata(path).ok().as_ref().and_then(not_a_file) {
+        return Err(FileError::new(path, what));
+    }
     // The state of a hash table is random.
     let part = folder.join(format!(".rasterbook.{:016x}.part", RandomState::new().hash_one(path)));
     let failure = |error| FileError::from_source(path, error);

@@ -199,9 +199,9 @@ impl Knob {
         match (self.kind, value) {
             (Kind::Choice(names), Value::Choice(index)) if index < names.len() => names[index].to_owned(),
             (_, Value::Switch(on)) => if on { "on" } else { "off" }.to_owned(),
-            (_, Value::Number(value)) => format!("{value}"),
+            (_, Value::Number(value)) => short(value),
             (_, Value::Whole(value)) => format!("{value}"),
-            (_, Value::Point(point)) => format!("{},{}", point.x, point.y),
+            (_, Value::Point(point)) => format!("{},{}", short(point.x), short(point.y)),
             (_, Value::Color(color)) => {
                 let [red, green, blue] = color.channels();
                 format!("{red:02x}{green:02x}{blue:02x}")
@@ -241,6 +241,13 @@ impl Knob {
 fn round_step(most: f64) -> f64 {
     let ten = libm::pow(10.0, libm::log10(most).floor());
     [5.0, 2.0, 1.0].map(|times| times * ten).into_iter().find(|step| *step <= most).unwrap_or(ten)
+}
+
+/// A number as it is written after `=`, and in the names of files: with an exponent, if it is long otherwise.
+fn short(value: f64) -> String {
+    // So many characters hold 17 digits, a sign, a point, and the 0 before it.
+    let text = format!("{value}");
+    if text.len() > 20 { format!("{value:e}") } else { text }
 }
 
 /// The nearest point of the picture.
@@ -315,6 +322,17 @@ pub(super) mod tests {
         assert_eq!(stepped(5, 2), Value::Color(Color::rgb(255, 32, 32)));
         let choices = [1, 3].map(|index| KNOBS[2].shown(Value::Choice(index)));
         assert_eq!(choices, ["top-left", "3"], "of what has no name, the number");
+    }
+
+    #[test]
+    fn no_number_is_long() {
+        for (value, text) in
+            [(-0.123_456_789_012_345_66, "-0.12345678901234566"), (1e-300, "1e-300"), (-0.0, "-0")]
+        {
+            assert_eq!(KNOBS[0].shown(Value::Number(value)), text);
+            assert_eq!(text.parse(), Ok(value));
+        }
+        assert_eq!(KNOBS[4].shown(Value::Point(dvec2(5e-324, 7.0))), "5e-324,7");
     }
 
     #[test]

@@ -50,12 +50,11 @@ fn refused(error: &clap::Error) -> ExitCode {
         let help = wrap_columns(&error.to_string(), terminal_width().unwrap_or(WIDEST));
         return ended(say(help.trim_end()));
     }
-    // The version goes to standard output, errors to standard error; a closed pipe is not worth a word.
-    if error.use_stderr() {
-        note(error.to_string().trim_end());
-    } else {
-        let _ = error.print();
+    // The version goes to standard output, errors to standard error.
+    if !error.use_stderr() {
+        return ended(say(error.to_string().trim_end()));
     }
+    note(error.to_string().trim_end());
     ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2))
 }
 

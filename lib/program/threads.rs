@@ -5,12 +5,16 @@ use std::thread;
 
 use rayon::{ThreadBuilder, ThreadPoolBuilder};
 
+/// The most threads that are started, unless the machine offers more. Each is a place in memory and work for all others:
+/// thousands of them end the program, and with hundreds a picture takes seconds.
+const MOST: usize = 64;
+
 /// Starts the threads that share the work, once in a program. The one that calls is the first of them; those that the
 /// system refuses are done without. Left to itself, `rayon` starts them when it is asked first, and panics if it cannot.
 pub(super) fn start() {
     let asked = std::env::var("RAYON_NUM_THREADS").ok().and_then(|count| count.parse().ok());
-    let offered = || thread::available_parallelism().map_or(1, usize::from);
-    let count = asked.filter(|&count| count > 0).unwrap_or_else(offered).min(rayon::max_num_threads());
+    let offered = thread::available_parallelism().map_or(1, usize::from);
+    let count = asked.filter(|&count| count > 0).unwrap_or(offered).min(offered.max(MOST));
     let mut others = (1..count).map_while(|_| waiting()).collect::<Vec<_>>();
     let pool = ThreadPoolBuilder::new().num_threads(others.len() + 1).use_current_thread();
     let pool = pool.spawn_handler(|worker| {

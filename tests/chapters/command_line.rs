@@ -454,6 +454,15 @@ fn where_no_thread_can_be_started_one_draws_alone() {
 }
 
 #[test]
+fn more_threads_than_a_machine_can_have_are_not_started() {
+    let folder = folder("threads");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_ch10_matrices_lighting"));
+    command.args(["turntable", "--rasterizer", "tiled", "--size", "64x48", "--out", "a.png"]);
+    let output = command.env("RAYON_NUM_THREADS", "100000").current_dir(&folder).output().expect("it starts");
+    assert!(output.status.success() && output.stderr.is_empty(), "{}", text(&output.stderr));
+}
+
+#[test]
 fn steps_that_do_not_fit_are_refused_with_a_size_that_does() {
     let reason =
         "'affine' has more steps than are kept (33554432 writes): 4096x4096 pixels would fit (--size)";
@@ -490,6 +499,43 @@ fn what_cannot_be_written_is_an_error_and_leaves_nothing() {
     }
     assert_eq!(files(&folder), ["file", "folder.png"]);
     assert_eq!(std::fs::read_to_string(folder.join("file")).expect("still there"), "in the way");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_pipe_is_not_replaced_by_a_picture() {
+    use std::os::unix::fs::FileTypeExt;
+    let folder = folder("pipe");
+    let made = Command::new("mkfifo").arg(folder.join("a.png")).status();
+    assert!(made.is_ok_and(|status| status.success()), "mkfifo");
+    let output = run_in(&folder, &["--out", "a.png"]);
+    let said = "error: cannot write a.png: is no regular file: a pipe or a device\n";
+    assert_eq!((output.status.code(), text(&output.stderr).as_str()), (Some(1), said));
+    assert!(folder.join("a.png").metadata().expect("still there").file_type().is_fifo());
+    assert_eq!(files(&folder), ["a.png"]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn what_cannot_be_printed_is_an_error() {
+    for option in ["--version", "--help", "--list"] {
+        let full = std::fs::OpenOptions::new().write(true).open("/dev/full").expect("a device");
+        let program = env!("CARGO_BIN_EXE_ch05_perspective_correct");
+        let output = Command::new(program).arg(option).stdout(full).output().expect("it starts");
+        let said = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{option}: {said}");
+        assert!(said.starts_with("error: cannot write to standard output: "), "{option}: {said}");
+    }
+}
+
+#[test]
+fn the_name_of_a_picture_is_short_whatever_a_knob_is() {
+    let folder = folder("names");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_ch10_matrices_lighting"));
+    command.args(["turntable", "--size", "8x6", "--eye=1e-300,1e-300", "--out", "x/"]);
+    let output = command.current_dir(&folder).output().expect("it starts");
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    assert_eq!(files(&folder.join("x")), ["turntable-azimuth-1e-300-elevation-1e-300.png"]);
 }
 
 #[test]
