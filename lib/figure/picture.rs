@@ -178,17 +178,23 @@ fn dim(color: Color) -> Color {
     Color::gray(((red * 2 + green * 5 + blue) / 8 / 4) as u8)
 }
 
+/// How wide pictures of these widths are beside each other, with the gaps between them.
+///
+/// `None` if there are none, or if that would be too wide for a framebuffer.
+#[must_use]
+pub fn width_side_by_side(widths: impl IntoIterator<Item = u32>) -> Option<u32> {
+    let with_gap = |width: u32| width.checked_add(GAP_WIDTH);
+    let total = widths.into_iter().try_fold(0_u32, |sum, width| sum.checked_add(with_gap(width)?))?;
+    total.checked_sub(GAP_WIDTH).filter(|width| *width <= Framebuffer::MAX_SIDE)
+}
+
 /// Pictures beside each other, from left to right, with a gray gap between them; aligned at the top.
 ///
 /// `None` if the result would be too large for a framebuffer.
 #[must_use]
 pub fn side_by_side(pictures: &[Framebuffer]) -> Option<Framebuffer> {
-    let gaps = GAP_WIDTH * (pictures.len() as u32).checked_sub(1)?;
-    let width = pictures.iter().map(Framebuffer::width).sum::<u32>() + gaps;
+    let width = width_side_by_side(pictures.iter().map(Framebuffer::width))?;
     let height = pictures.iter().map(Framebuffer::height).max()?;
-    if width > Framebuffer::MAX_SIDE {
-        return None;
-    }
     let mut result = Framebuffer::new(width, height);
     result.clear(GAP);
     let mut left = 0;

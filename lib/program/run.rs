@@ -19,7 +19,7 @@ use super::threads;
 #[cfg(feature = "window")]
 use super::window::open_window;
 use super::wrap::{WIDEST, terminal_width, wrap_columns};
-use crate::figure::picture::{Zoom, difference, side_by_side, zoomed};
+use crate::figure::picture::{Zoom, difference, side_by_side, width_side_by_side, zoomed};
 use crate::figure::{Animation, Chapter, DrawOptions, Knob, Scene, Variant};
 use crate::files::silence_decoders;
 use crate::framebuffer::Framebuffer;
@@ -217,7 +217,7 @@ fn sweep_comparison(
     destination: &Destination,
 ) -> Result<(), Failure> {
     let knob = sweepable(this, name, request)?;
-    let (first, second) = pair_of(this, that, request)?;
+    let (first, second) = comparable(this, that, request)?;
     let panels = |number| compared(swept(&first, knob, number), swept(&second, knob, number), request.zoom);
     // Whether the three fit is the same for all frames: it is seen at the first.
     panels(0).ok_or_else(|| not_comparable(&first, &second))?;
@@ -268,7 +268,7 @@ fn draw_comparison(
     request: &Request,
     destination: &Destination,
 ) -> Result<(), Failure> {
-    let (first, second) = pair_of(this, that, request)?;
+    let (first, second) = comparable(this, that, request)?;
     let total = first.size.0 as usize * first.size.1 as usize;
     let (picture, count) =
         compared(first.draw(), second.draw(), request.zoom).ok_or_else(|| not_comparable(&first, &second))?;
@@ -283,6 +283,18 @@ fn compared(first: Framebuffer, second: Framebuffer, zoom: Option<Zoom>) -> Opti
     let (marked, count) = difference(&first, &second)?;
     let panels = [first, second, marked].map(|panel| enlarged(panel, zoom));
     Some((side_by_side(&panels)?, count))
+}
+
+/// The scenes of two variants that can be drawn side by side, as far as it is known before they are drawn: a part that is
+/// zoomed is smaller than the picture.
+fn comparable<'a>(
+    this: &'a Variant,
+    that: &'a Variant,
+    request: &Request,
+) -> Result<(Scene<'a>, Scene<'a>), Failure> {
+    let (first, second) = pair_of(this, that, request)?;
+    let fits = request.zoom.is_some() || width_side_by_side([first.size.0; 3]).is_some();
+    if first.size == second.size && fits { Ok((first, second)) } else { Err(not_comparable(&first, &second)) }
 }
 
 /// Why two variants cannot be drawn side by side.

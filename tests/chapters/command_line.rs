@@ -469,17 +469,24 @@ fn steps_that_do_not_fit_are_refused_with_a_size_that_does() {
     refused("steps_too_large", &["affine", "--steps", "--size", "8192x8192"], 2, reason);
 }
 
-/// What is counted needs no memory for each time.
+/// What is counted needs no memory for each time; what does not fit is not drawn.
 #[cfg(target_os = "linux")]
 #[test]
-fn overdraw_needs_little_more_memory_than_the_picture() {
+fn no_memory_is_taken_in_vain() {
     let folder = folder("memory");
     let program = env!("CARGO_BIN_EXE_ch05_perspective_correct");
-    let line = format!("ulimit -v 200000; exec {program} floor --overdraw --size 1280x960 --out a.png");
-    let mut command = Command::new("sh");
-    command.args(["-c", &line]).env("RAYON_NUM_THREADS", "1").current_dir(&folder);
-    let output = command.output().expect("it starts");
+    let run = |arguments: &str| {
+        let line = format!("ulimit -v 200000; exec {program} {arguments} --out a.png");
+        let mut command = Command::new("sh");
+        command.args(["-c", &line]).env("RAYON_NUM_THREADS", "1").current_dir(&folder);
+        command.output().expect("it starts")
+    };
+    let output = run("floor --overdraw --size 1280x960");
     assert!(output.status.success(), "{}", text(&output.stderr));
+    // One picture would have 268 MB: it is not drawn in vain.
+    let output = run("affine --compare --size 8192x8192");
+    assert_eq!(output.status.code(), Some(2), "{}", text(&output.stderr));
+    assert!(text(&output.stderr).contains("three such pictures are too wide"), "{}", text(&output.stderr));
 }
 
 #[test]

@@ -4,7 +4,8 @@ use std::ops::Range;
 
 use rasterbook::exact::edge::snap;
 use rasterbook::figure::picture::{
-    Zoom, difference, draw_enlarged, draw_enlarged_within, enlarged, paste, side_by_side, zoomed,
+    Zoom, difference, draw_enlarged, draw_enlarged_within, enlarged, paste, side_by_side, width_side_by_side,
+    zoomed,
 };
 use rasterbook::figure::{DrawOptions, Fit, Knob, Knobs, Sketch, Value, Variant, stroke};
 use rasterbook::inspect::{Steps, heat_legend, overdraw, with_legend};
@@ -235,6 +236,7 @@ fn too_large_pictures_panic() {
         assert_panics("an enlarged screen", || draw_enlarged(&mut Framebuffer::new(3, 3), screen, |_| ()));
     }
     assert_panics("no factor", || Zoom { factor: 0, center: None }.part(picture.rect()));
+    assert_eq!([vec![], vec![u32::MAX; 2], vec![u32::MAX]].map(width_side_by_side), [None; 3]);
     assert!(side_by_side(&[]).is_none() && side_by_side(&vec![picture; 5000]).is_none());
     let mut knobs = Knobs::new(&KNOBS, (640, 480));
     assert_panics("a wrong kind", || knobs.number("whole"));
