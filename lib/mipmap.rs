@@ -13,6 +13,7 @@
 //! assert_eq!(maps.trilinear([0.3, 0.3], 1.0, AddressMode::Repeat), [128.0; 3]); // the mean
 //! ```
 
+use std::iter::{repeat_n, successors};
 use std::sync::Arc;
 
 use crate::color::Color;
@@ -54,20 +55,24 @@ impl MipMaps {
     #[must_use]
     pub fn new(texture: &Texture) -> Self {
         assert!(texture.height() <= 1 << 23, "mip maps of {} rows", texture.height());
+        let next = |level: &Texture| (level.width().max(level.height()) > 1).then(|| halved(level));
+        let copies: Vec<Texture> = successors(Some(texture.clone()), next).collect();
         let row_bits = texture.width().next_power_of_two().trailing_zeros();
-        let (mut levels, mut texels) = (Vec::new(), Vec::new());
-        let mut next = Some(texture.clone());
-        while let Some(level) = next {
-            let [width, height, below] =
-                [level.width() as usize, level.height() as usize, texels.len() >> row_bits];
-            levels.push([width as f64, height as f64, below as f64]);
+        let rows: usize = copies.iter().map(|level| level.height() as usize).sum();
+        // Made once, as large as it will be: of the largest texture it has half a gigabyte.
+        let mut texels: Arc<[Color]> = repeat_n(Color::BLACK, rows << row_bits).collect();
+        let places = Arc::get_mut(&mut texels).expect("nobody shares it yet");
+        let mut below = 0;
+        let levels = copies.iter().map(|level| {
+            let [width, height] = [level.width(), level.height()].map(|side| side as usize);
             for row in 0..height {
-                texels.extend_from_slice(level.row(row));
-                texels.resize((below + row + 1) << row_bits, Color::BLACK);
+                let first = (below + row) << row_bits;
+                places[first..first + width].copy_from_slice(level.row(row));
             }
-            next = (width.max(height) > 1).then(|| halved(&level));
-        }
-        Self { levels: levels.into(), texels: texels.into(), row_bits }
+            below += height;
+            [width as f64, height as f64, (below - height) as f64]
+        });
+        Self { levels: levels.collect(), texels, row_bits }
     }
     // ANCHOR_END: mip_maps
 
