@@ -250,6 +250,12 @@ mod tests {
     }
 
     #[test]
+    fn of_what_is_too_long_for_a_path_the_beginning_is_shown() {
+        let shown = |length: usize| shown_path("x".repeat(length).as_ref());
+        assert_eq!([4096, 4097].map(shown), ["x".repeat(4096), "x".repeat(4096) + "…"]);
+    }
+
+    #[test]
     fn the_content_says_what_an_image_is() {
         let mut png = std::io::Cursor::new(Vec::new());
         image::RgbImage::new(2, 1).write_to(&mut png, ImageFormat::Png).expect("two pixels");

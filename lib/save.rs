@@ -109,6 +109,20 @@ mod tests {
     }
 
     #[test]
+    fn what_is_in_the_way_is_named() {
+        let top = Folder::new("way", &[("file", b"precious")]);
+        let refused = |place: &str| {
+            let path = top.0.join(place);
+            Framebuffer::new(1, 1).save(path).expect_err("something is in the way").to_string()
+        };
+        assert!(refused("file/a.png").ends_with("file: is no folder"));
+        fs::create_dir(top.0.join("b.png")).expect("a place for temporary files");
+        assert!(refused("b.png").ends_with("b.png: is a folder"));
+        assert_eq!(fs::read(top.0.join("file")).expect("still there"), b"precious");
+        assert_eq!(fs::read_dir(&top.0).expect("made").count(), 2, "nothing else is left");
+    }
+
+    #[test]
     fn unknown_formats_are_refused() {
         let error = Framebuffer::new(1, 1).save("picture.doc").expect_err("no picture format");
         assert_eq!(error.to_string(), "picture.doc: names no format that is written: .png .bmp .tga .ppm");
