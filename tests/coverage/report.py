@@ -1,5 +1,6 @@
 """Reads what `tests/coverage/run` collects: how many lines of each file of lib/ the tests run, and which they do not."""
 
+import re
 import sys
 from collections import defaultdict
 from pathlib import Path
@@ -23,7 +24,8 @@ def lines(path):
 def code(file):
     """The lines of a file, and the number of the first that belongs to its unit tests."""
     text = (ROOT / file).read_text().splitlines()
-    tests = next((n for n, line in enumerate(text, 1) if line == "#[cfg(test)]"), len(text) + 1)
+    is_tests = re.compile(r"#\[cfg\((all\()?test\b").match
+    tests = next((n for n, line in enumerate(text, 1) if is_tests(line)), len(text) + 1)
     return text, tests
 
 
