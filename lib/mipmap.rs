@@ -69,8 +69,9 @@ impl MipMaps {
                 let first = (below + row) << row_bits;
                 places[first..first + width].copy_from_slice(level.row(row));
             }
+            let level = [width as f64, height as f64, below as f64];
             below += height;
-            [width as f64, height as f64, (below - height) as f64]
+            level
         });
         Self { levels: levels.collect(), texels, row_bits }
     }

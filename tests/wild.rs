@@ -333,8 +333,7 @@ fn nothing_from_a_file_commands_the_terminal() {
 #[test]
 fn what_is_said_of_a_long_word_is_short() {
     let long = "x".repeat(20_000);
-    let files =
-        |obj: &str, mtl: &str| [("a.obj", obj.replace('…', &long)), ("a.mtl", mtl.replace('…', &long))];
+    let lengthened = |text: &str| text.replace('…', &long);
     let short =
         |said: &str| assert!(!said.is_empty() && said.len() < 6000, "{} bytes: {said:.300}", said.len());
     for face in [
@@ -348,9 +347,8 @@ fn what_is_said_of_a_long_word_is_short() {
         "vn 0 0 … 1",
     ] {
         let folder = folder("a long word in an error");
-        for (name, text) in files(&format!("{SQUARE}f 1 2 3\n{face}\n"), "") {
-            write(&folder, &[(name, text.as_bytes())]);
-        }
+        let obj = lengthened(&format!("{SQUARE}f 1 2 3\n{face}\n"));
+        write(&folder, &[("a.obj", obj.as_bytes())]);
         let output = run(&folder, &["--model", "a.obj"]);
         assert_eq!(output.status.code(), Some(1), "{face}");
         short(&stderr(&output));
@@ -367,7 +365,7 @@ fn what_is_said_of_a_long_word_is_short() {
         ("", "newmtl m\n…"),
         ("usemtl …", "newmtl …\nmap_Kd x.png"),
     ] {
-        let [(_, obj), (_, mtl)] = files(&format!("{used}{obj}\nf 1 3 4\n"), mtl);
+        let [obj, mtl] = [&format!("{used}{obj}\nf 1 3 4\n"), mtl].map(lengthened);
         short(&drawn("a long word", &[("a.obj", obj.as_bytes()), ("a.mtl", mtl.as_bytes())], &[]).0);
     }
 }

@@ -419,7 +419,7 @@ fn wood() -> Framebuffer {
 mod tests {
     use super::*;
 
-    // There the files are not carried.
+    // In WebAssembly the files are not carried.
     #[test]
     #[cfg(not(target_family = "wasm"))]
     fn what_is_made_is_what_is_read() {

@@ -13,13 +13,13 @@ use super::choice::{check_model_options, find, hints, other, unnamed};
 use super::failure::Failure;
 use super::lists::{knob_list, list, list_json};
 use super::output::{Destination, note, say};
-use super::scenes::{check_inside, load, name_of, pair_of, scene_of, sweepable, unseen};
+use super::scenes::{check_inside, load, name_of, not_comparable, pair_of, scene_of, sweepable, unseen};
 use super::show::Screen;
 use super::threads;
 #[cfg(feature = "window")]
 use super::window::open_window;
 use super::wrap::{WIDEST, terminal_width, wrap_columns};
-use crate::figure::picture::{Zoom, difference, side_by_side, width_side_by_side, zoomed};
+use crate::figure::picture::{Zoom, difference, side_by_side, zoomed};
 use crate::figure::{Animation, Chapter, DrawOptions, Knob, Scene, Variant};
 use crate::files::silence_decoders;
 use crate::framebuffer::Framebuffer;
@@ -217,10 +217,8 @@ fn sweep_comparison(
     destination: &Destination,
 ) -> Result<(), Failure> {
     let knob = sweepable(this, name, request)?;
-    let (first, second) = comparable(this, that, request)?;
+    let (first, second) = pair_of(this, that, request)?;
     let panels = |number| compared(swept(&first, knob, number), swept(&second, knob, number), request.zoom);
-    // Whether the three fit is the same for all frames: it is seen at the first.
-    panels(0).ok_or_else(|| not_comparable(&first, &second))?;
     let draw = |number| panels(number).map_or_else(|| first.draw(), |(picture, _)| picture);
     let file = format!("{}-sweep-{name}--{}", name_of(&first, request), that.name);
     destination.write_animation(&file, |format| encode(format, Animation::SWEEP, &draw))
@@ -268,7 +266,7 @@ fn draw_comparison(
     request: &Request,
     destination: &Destination,
 ) -> Result<(), Failure> {
-    let (first, second) = comparable(this, that, request)?;
+    let (first, second) = pair_of(this, that, request)?;
     let total = first.size.0 as usize * first.size.1 as usize;
     let (picture, count) =
         compared(first.draw(), second.draw(), request.zoom).ok_or_else(|| not_comparable(&first, &second))?;
@@ -283,25 +281,4 @@ fn compared(first: Framebuffer, second: Framebuffer, zoom: Option<Zoom>) -> Opti
     let (marked, count) = difference(&first, &second)?;
     let panels = [first, second, marked].map(|panel| enlarged(panel, zoom));
     Some((side_by_side(&panels)?, count))
-}
-
-/// The scenes of two variants that can be drawn side by side, as far as it is known before they are drawn: a part that is
-/// zoomed is smaller than the picture.
-fn comparable<'a>(
-    this: &'a Variant,
-    that: &'a Variant,
-    request: &Request,
-) -> Result<(Scene<'a>, Scene<'a>), Failure> {
-    let (first, second) = pair_of(this, that, request)?;
-    let fits = request.zoom.is_some() || width_side_by_side([first.size.0; 3]).is_some();
-    if first.size == second.size && fits { Ok((first, second)) } else { Err(not_comparable(&first, &second)) }
-}
-
-/// Why two variants cannot be drawn side by side.
-fn not_comparable(first: &Scene<'_>, second: &Scene<'_>) -> Failure {
-    Failure::Usage(if first.size == second.size {
-        "three such pictures are too wide: give a smaller --size".to_owned()
-    } else {
-        format!("'{}' and '{}' differ in size: give --size", first.variant.name, second.variant.name)
-    })
 }

@@ -11,7 +11,7 @@ use super::lists::knob_list;
 use super::options::SHORT;
 use super::output::note;
 use crate::color::Color;
-use crate::figure::picture::Zoom;
+use crate::figure::picture::{Zoom, width_side_by_side};
 use crate::figure::{DrawOptions, Given, Knob, KnobError, RasterizerChoice, Scene, Subject, Variant};
 use crate::files::{FileError, load_texture, shown_path};
 use crate::framebuffer::Framebuffer;
@@ -44,7 +44,8 @@ fn sized<'a>(variant: &'a Variant, request: &Request, given: &Given) -> Result<S
     Ok(Scene { size, rasterizer, ..Scene::new(variant, given).map_err(runtime_failure)? })
 }
 
-/// Two variants that are to be compared: the second takes over the frame, and the knobs that it has too.
+/// Two variants that are to be compared: the second takes over the frame, and the knobs that it has too. What cannot lie side
+/// by side is refused before it is drawn; an enlarged part always can.
 pub(super) fn pair_of<'a>(
     this: &'a Variant,
     that: &'a Variant,
@@ -54,7 +55,18 @@ pub(super) fn pair_of<'a>(
     let first = scene_of(this, request, &given)?;
     let mut second = Scene { frame: first.frame, ..sized(that, request, &given)? };
     second.knobs.take_over(&first.knobs);
-    Ok((first, second))
+    let is_enlarged = request.zoom.is_some_and(|zoom| zoom.factor > 1);
+    let fits = is_enlarged || width_side_by_side([first.size.0; 3]).is_some();
+    if first.size == second.size && fits { Ok((first, second)) } else { Err(not_comparable(&first, &second)) }
+}
+
+/// Why two variants cannot be drawn side by side.
+pub(super) fn not_comparable(first: &Scene<'_>, second: &Scene<'_>) -> Failure {
+    Failure::Usage(if first.size == second.size {
+        "three such pictures are too wide: give a smaller --size".to_owned()
+    } else {
+        format!("'{}' and '{}' differ in size: give --size", first.variant.name, second.variant.name)
+    })
 }
 
 /// Reads what was given in place of a variant's own model and texture.

@@ -484,9 +484,15 @@ fn no_memory_is_taken_in_vain() {
     let output = run("floor --overdraw --size 1280x960");
     assert!(output.status.success(), "{}", text(&output.stderr));
     // One picture would have 268 MB: it is not drawn in vain.
-    let output = run("affine --compare --size 8192x8192");
-    assert_eq!(output.status.code(), Some(2), "{}", text(&output.stderr));
-    assert!(text(&output.stderr).contains("three such pictures are too wide"), "{}", text(&output.stderr));
+    for arguments in ["affine --compare --size 8192x8192", "affine --compare --size 8192x8192 --zoom 1"] {
+        let output = run(arguments);
+        assert_eq!(output.status.code(), Some(2), "{}", text(&output.stderr));
+        assert!(
+            text(&output.stderr).contains("three such pictures are too wide"),
+            "{}",
+            text(&output.stderr)
+        );
+    }
 }
 
 #[test]
@@ -538,9 +544,7 @@ fn what_cannot_be_printed_is_an_error() {
 #[test]
 fn the_name_of_a_picture_is_short_whatever_a_knob_is() {
     let folder = folder("names");
-    let mut command = Command::new(env!("CARGO_BIN_EXE_ch10_matrices_lighting"));
-    command.args(["turntable", "--size", "8x6", "--eye=1e-300,1e-300", "--out", "x/"]);
-    let output = command.current_dir(&folder).output().expect("it starts");
+    let output = last(&folder, &["turntable", "--size", "8x6", "--eye=1e-300,1e-300", "--out", "x/"]);
     assert!(output.status.success(), "{}", text(&output.stderr));
     assert_eq!(files(&folder.join("x")), ["turntable-azimuth-1e-300-elevation-1e-300.png"]);
 }
