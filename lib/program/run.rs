@@ -13,7 +13,7 @@ use super::choice::{check_model_options, find, hints, other, unnamed};
 use super::failure::Failure;
 use super::lists::{knob_list, list, list_json};
 use super::output::{Destination, note, say};
-use super::scenes::{check_inside, load, name_of, not_comparable, pair_of, scene_of, sweepable, unseen};
+use super::scenes::{check_inside, load, name_of, pair_of, scene_of, sweepable, unseen};
 use super::show::Screen;
 use super::threads;
 #[cfg(feature = "window")]
@@ -218,8 +218,7 @@ fn sweep_comparison(
 ) -> Result<(), Failure> {
     let knob = sweepable(this, name, request)?;
     let (first, second) = pair_of(this, that, request)?;
-    let panels = |number| compared(swept(&first, knob, number), swept(&second, knob, number), request.zoom);
-    let draw = |number| panels(number).map_or_else(|| first.draw(), |(picture, _)| picture);
+    let draw = |number| compared(swept(&first, knob, number), swept(&second, knob, number), request.zoom).0;
     let file = format!("{}-sweep-{name}--{}", name_of(&first, request), that.name);
     destination.write_animation(&file, |format| encode(format, Animation::SWEEP, &draw))
 }
@@ -268,17 +267,16 @@ fn draw_comparison(
 ) -> Result<(), Failure> {
     let (first, second) = pair_of(this, that, request)?;
     let total = first.size.0 as usize * first.size.1 as usize;
-    let (picture, count) =
-        compared(first.draw(), second.draw(), request.zoom).ok_or_else(|| not_comparable(&first, &second))?;
+    let (picture, count) = compared(first.draw(), second.draw(), request.zoom);
     destination.write(&format!("{}--{}", name_of(&first, request), that.name), &picture)?;
     note(&format!("{count} of {total} pixels differ"));
     tell_part(request, first.size);
     Ok(())
 }
 
-/// The two pictures and where they differ, side by side, and in how many pixels; `None` if that cannot be drawn.
-fn compared(first: Framebuffer, second: Framebuffer, zoom: Option<Zoom>) -> Option<(Framebuffer, usize)> {
-    let (marked, count) = difference(&first, &second)?;
+/// The two pictures of a pair and where they differ, side by side, and in how many pixels.
+fn compared(first: Framebuffer, second: Framebuffer, zoom: Option<Zoom>) -> (Framebuffer, usize) {
+    let (marked, count) = difference(&first, &second).expect("a pair is of one size");
     let panels = [first, second, marked].map(|panel| enlarged(panel, zoom));
-    Some((side_by_side(&panels)?, count))
+    (side_by_side(&panels).expect("a pair fits side by side"), count)
 }

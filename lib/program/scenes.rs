@@ -61,7 +61,7 @@ pub(super) fn pair_of<'a>(
 }
 
 /// Why two variants cannot be drawn side by side.
-pub(super) fn not_comparable(first: &Scene<'_>, second: &Scene<'_>) -> Failure {
+fn not_comparable(first: &Scene<'_>, second: &Scene<'_>) -> Failure {
     Failure::Usage(if first.size == second.size {
         "three such pictures are too wide: give a smaller --size".to_owned()
     } else {
